@@ -1,0 +1,189 @@
+"""The stage graph: what a run consists of, in one pure place.
+
+`expand` turns settings and the facts known so far into the list of tasks. It is called again whenever a
+task ends, because some stages fan out over what an earlier one found (frames, windows, depth maps). The
+same call with the same facts gives the same list, so a plan can be rebuilt after any crash.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from core.settings import Settings
+from core.stage import Facts
+from core.windows import Window, coarse_windows, refined_windows
+
+
+@dataclass(frozen=True)
+class StageSpec:
+    """A kind of task: its code, what of the settings it reads, where it may run."""
+
+    name: str
+    version: int
+    entry: str
+    """``module:function`` of the stage; a string, so that the graph loads no vision library."""
+    settings: tuple[str, ...]
+    """Groups or single dotted options that the stage reads: exactly these enter its fingerprint."""
+    fan_out: bool = False
+    """Many tasks of this stage run side by side, so each uses one thread."""
+    queue: Literal["cpu", "gpu"] = "cpu"
+    weight: float = 1.0
+    """Rough share of the run's time, for progress before anything is learnt."""
+    reads_video: bool = False
+    reads_annotations: bool = False
+
+
+def _spec(name: str, *settings: str, version: int = 1, **more: Any) -> StageSpec:
+    return StageSpec(name, version, f"core.stages.{name}:run", settings, **more)
+
+
+STAGES: dict[str, StageSpec] = {
+    spec.name: spec
+    for spec in (
+        _spec("probe", "input", reads_video=True, weight=1),
+        _spec("annotations", reads_annotations=True, weight=0.2),
+        _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=1),
+        _spec("features", "features", fan_out=True, weight=20),
+        _spec("focal", "camera", "matching.ratio", "verification", "mapper", "seed", fan_out=True, weight=3),
+        _spec("camera", "camera", weight=0.1),
+        _spec("matches", "matching", "verification", "features.method", "seed", fan_out=True, weight=12),
+        _spec("graph", weight=1),
+        _spec("coarse", "mapper", "seed", fan_out=True, weight=20),
+        _spec("reduce_coarse", weight=0.1),
+        _spec("refine", "mapper", "seed", fan_out=True, weight=15),
+        _spec("reduce_refine", weight=0.1),
+        _spec("confirm", "mapper", "model", "seed", weight=8),
+        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", weight=8),
+        _spec("undistort", "dense", "compute.chunk_views", weight=1),
+        _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=12),
+        _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=5),
+        _spec("fuse", "fusion", "dense", weight=2),
+        _spec("mesh", "mesh", weight=3),
+        _spec("map_defects", "mapping", weight=1),
+        _spec("timeline", "timeline", weight=0.2),
+        _spec("gallery", weight=1),
+    )
+}
+
+
+@dataclass(frozen=True)
+class TaskSpec:
+    """One task of the plan. `key` is unique in a run; `depends` lists keys."""
+
+    key: str
+    depends: tuple[str, ...] = ()
+    args: Mapping[str, Any] = field(default_factory=dict)
+    optional: bool = False
+    """A failure of this task is an outcome: tasks that depend on it go on without its result."""
+
+    @property
+    def stage(self) -> str:
+        """Name of the stage in `STAGES`."""
+        return self.key.split("/", 1)[0]
+
+
+def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
+    """All tasks that follow from the facts known so far, in topological order.
+
+    Args:
+        settings: of the run.
+        facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``reduce_coarse``
+            {best, start, end}, ``undistort`` {n_views}.
+    """
+    tasks = [
+        TaskSpec("probe"),
+        TaskSpec("annotations", ("probe",)),
+        TaskSpec("frames", ("probe", "annotations")),
+    ]
+    if "frames" not in facts:
+        return tasks
+    n_frames, n_search = int(facts["frames"]["n_frames"]), int(facts["frames"]["n_search"])
+    tasks += _front_end(settings, n_frames)
+    coarse = coarse_windows(n_search, settings.windows)
+    tasks += [_case(window, ("graph",)) for window in coarse]
+    tasks.append(TaskSpec("reduce_coarse", tuple(_case_key(window) for window in coarse)))
+    if "reduce_coarse" not in facts:
+        return tasks
+    return tasks + _from_search_on(settings, facts, n_search)
+
+
+def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
+    """Features, camera, matches and the verified view graph."""
+    step = settings.compute.chunk_frames
+    chunks = [(start, min(start + step, n_frames)) for start in range(0, n_frames, step)]
+    features = [
+        TaskSpec(f"features/{i:03d}", ("frames", "annotations"), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)
+    ]
+    feature_keys = tuple(task.key for task in features)
+    tasks = list(features)
+    focal_keys: tuple[str, ...] = ()
+    if settings.camera.fov_deg is None and settings.camera.focal == "estimate":
+        focal = [
+            TaskSpec(f"focal/{fov:05.1f}", ("frames", *feature_keys), {"fov_deg": fov}, optional=True)
+            for fov in settings.camera.fov_starts_deg
+        ]
+        tasks += focal
+        focal_keys = tuple(task.key for task in focal)
+    tasks.append(TaskSpec("camera", ("frames", *focal_keys)))
+    matches = [
+        TaskSpec(f"matches/{i:03d}", ("frames", "camera", *feature_keys), {"start": a, "end": b})
+        for i, (a, b) in enumerate(chunks)
+    ]
+    tasks += matches
+    tasks.append(TaskSpec("graph", ("frames", "camera", *feature_keys, *(task.key for task in matches))))
+    return tasks
+
+
+def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: int) -> list[TaskSpec]:
+    """Refinement, final model, dense surface, mapping."""
+    best = facts["reduce_coarse"]
+    refined = refined_windows((int(best["start"]), int(best["end"])), n_search, settings.windows, str(best["best"]))
+    tasks = [_case(window, ("graph", "reduce_coarse")) for window in refined]
+    coarse_key = f"coarse/{best['best']}"
+    refine_keys = tuple(_case_key(window) for window in refined)
+    tasks.append(TaskSpec("reduce_refine", ("reduce_coarse", coarse_key, *refine_keys)))
+    tasks.append(TaskSpec("confirm", ("frames", "graph", "reduce_refine")))
+    tasks.append(TaskSpec("extend", ("frames", "graph", "confirm")))
+    tasks.append(TaskSpec("undistort", ("frames", "extend")))
+    if "undistort" not in facts:
+        return tasks
+    step, n_views = settings.compute.chunk_views, int(facts["undistort"]["n_views"])
+    chunks = [(start, min(start + step, n_views)) for start in range(0, n_views, step)]
+    depth = [TaskSpec(f"depth/{i:03d}", ("undistort",), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
+    depth_keys = tuple(task.key for task in depth)
+    geometric = [
+        TaskSpec(f"geometric/{i:03d}", ("undistort", *depth_keys), {"start": a, "end": b})
+        for i, (a, b) in enumerate(chunks)
+    ]
+    tasks += [*depth, *geometric]
+    tasks.append(TaskSpec("fuse", ("undistort", *(task.key for task in geometric))))
+    tasks.append(TaskSpec("mesh", ("fuse",)))
+    tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", "extend", "fuse", "mesh")))
+    tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "mesh", "map_defects")))
+    tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", "timeline")))
+    return tasks
+
+
+def _case_key(window: Window) -> str:
+    return f"{window.kind}/{window.name}"
+
+
+def _case(window: Window, depends: tuple[str, ...]) -> TaskSpec:
+    """One reconstruction case; a failed case is an outcome, the search goes on without it."""
+    args: dict[str, Any] = {"name": window.name, "start": window.start, "end": window.end, "warm_from": window.warm_from}
+    if window.warm_from:
+        depends = (*depends, f"coarse/{window.warm_from}")
+    return TaskSpec(_case_key(window), depends, args, optional=True)
+
+
+def stage_settings(settings: Settings, spec: StageSpec) -> dict[str, Any]:
+    """The part of the settings that a stage reads, as JSON values, for its fingerprint."""
+    chosen: dict[str, Any] = {}
+    for name in spec.settings:
+        value: Any = settings
+        for part in name.split("."):
+            value = getattr(value, part)
+        chosen[name] = value.model_dump(mode="json") if hasattr(value, "model_dump") else value
+    return chosen

@@ -1,0 +1,213 @@
+"""All algorithm options, grouped by what they govern. Defaults here are the preset `default`."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from core.settings.base import Group, option
+
+
+class InputSettings(Group):
+    """What is accepted as input."""
+
+    allow_truncated: bool = option(False, "use the decodable part of a damaged video", source="refused by default")
+
+
+class FrameSettings(Group):
+    """Which frames of the video take part."""
+
+    clip_start_s: float | None = option(
+        None, "start of the used interval; none = first frame", unit="s", source="thesis uses 2.0", ge=0
+    )
+    clip_end_s: float | None = option(
+        None, "end of the used interval; none = last frame", unit="s", source="thesis uses 121.0", gt=0
+    )
+    count: int = option(450, "frames sampled evenly over the interval, at most", unit="frames", source="thesis", ge=2)
+    include_annotated: bool = option(True, "add every frame that carries a detection", source="coverage")
+    max_count: int = option(
+        600, "sampled and annotated frames of the search together, at most", unit="frames", source="time budget", ge=2
+    )
+    jpeg_quality: int = option(95, "quality of the exported frames", unit="%", source="OpenCV default", ge=50, le=100)
+
+
+class RoiSettings(Group):
+    """Region of interest, normalised on the source frame."""
+
+    x0: float = option(0.04, "left edge", unit="share of width", source="thesis", ge=0, le=1)
+    y0: float = option(0.11, "upper edge", unit="share of height", source="thesis", ge=0, le=1)
+    x1: float = option(0.86, "right edge", unit="share of width", source="thesis", ge=0, le=1)
+    y1: float = option(0.84, "lower edge", unit="share of height", source="thesis", ge=0, le=1)
+
+
+class CameraSettings(Group):
+    """Where the lens model starts. The model is one shared OPENCV_FISHEYE camera."""
+
+    fov_deg: float | None = option(
+        None, "horizontal field of view of the source frame, when known", unit="deg", source="user", gt=5, lt=220
+    )
+    focal: Literal["estimate", "colmap"] = option(
+        "estimate", "without a field of view: estimate it, or start at COLMAP's 1.2 x longer side", source="METHOD"
+    )
+    fov_starts_deg: tuple[float, ...] = option(
+        (40.0, 55.0, 70.0, 85.0, 100.0, 120.0),
+        "horizontal fields of view tried by the estimate",
+        unit="deg",
+        source="METHOD: 40-120 degrees",
+    )
+    focal_span: int = option(30, "frames in each span the estimate maps", unit="frames", source="measured", ge=8)
+    focal_spans: int = option(2, "spans the estimate maps for every start", source="measured", ge=1, le=8)
+    principal_point: Literal["source", "crop"] = option(
+        "source", "principal point: source frame's centre minus crop offset, or the crop's centre", source="METHOD"
+    )
+
+
+class FeatureSettings(Group):
+    """Keypoints and descriptors."""
+
+    method: Literal["disk", "sift"] = option("disk", "detector and descriptor", source="thesis")
+    max_keypoints: int = option(5000, "keypoints per frame, at most", source="thesis", ge=64)
+    max_size_px: int = option(
+        1600, "longer side above which frames are scaled down (never up)", unit="px", source="thesis", ge=64
+    )
+    scale: float = option(1.0, "further scale of the frame before detection", source="draft uses 0.5", gt=0, le=1)
+    blade_masks_only: bool = option(False, "drop keypoints outside the annotated blade masks", source="off")
+
+
+class MatchSettings(Group):
+    """Pairs and how they are matched."""
+
+    method: Literal["mutual_nearest", "lightglue", "auto"] = option(
+        "auto", "mutual nearest neighbours, LightGlue, or LightGlue only where verification is weak", source="METHOD"
+    )
+    window: int = option(5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1)
+    ratio: float = option(0.98, "mutual nearest: distance ratio first / second must be below", source="measured", gt=0, le=1)
+    auto_min_inliers: int = option(
+        100, "auto: fewer verified inliers than this call for LightGlue", source="measured", ge=0
+    )
+    auto_min_inlier_share: float = option(
+        0.25, "auto: a smaller share of verified matches calls for LightGlue", source="measured", ge=0, le=1
+    )
+
+
+class VerificationSettings(Group):
+    """Two-view geometric verification."""
+
+    max_error_px: float = option(1.5, "RANSAC inlier threshold", unit="px", source="thesis 4.0; measured", gt=0)
+    min_inliers: int = option(15, "inliers below which a pair is dropped", source="COLMAP", ge=8)
+
+
+class WindowSettings(Group):
+    """Windows over the frame sequence; each window is one reconstruction case."""
+
+    mode: Literal["search", "single"] = option("search", "coarse and refined windows, or one window", source="thesis")
+    coarse_length: int = option(180, "coarse window", unit="frames", source="thesis", ge=3)
+    coarse_step: int = option(20, "step of coarse windows", unit="frames", source="thesis", ge=1)
+    coarse_min: int = option(30, "shorter coarse windows are dropped", unit="frames", source="thesis", ge=3)
+    refine_margin: int = option(80, "best coarse interval is widened by", unit="frames", source="thesis", ge=0)
+    refine_length: int = option(220, "refined window", unit="frames", source="thesis", ge=3)
+    refine_step: int = option(10, "step of refined windows", unit="frames", source="thesis", ge=1)
+    refine_min: int = option(60, "shorter refined windows are dropped", unit="frames", source="thesis", ge=3)
+    start: Literal["scratch", "warm"] = option(
+        "warm", "cases start from scratch, or from the model of a case named by the plan", source="ENGINES 3"
+    )
+    anchor_step: int = option(
+        60, "warm: windows that start at multiples of this map from scratch", unit="frames", source="ENGINES 3", ge=1
+    )
+
+
+class MapperSettings(Group):
+    """COLMAP's incremental mapper."""
+
+    min_model_size: int = option(3, "smallest model kept", unit="images", source="thesis", ge=2)
+    init_min_num_inliers: int = option(40, "inliers of the initial pair", source="thesis", ge=6)
+    abs_pose_min_num_inliers: int = option(20, "inliers to register an image", source="thesis", ge=6)
+    abs_pose_min_inlier_ratio: float = option(0.10, "inlier share to register an image", source="thesis", ge=0, le=1)
+    initial_pair: Literal["graph", "colmap"] = option(
+        "graph", "initial pair from the verified graph, or COLMAP's own search", source="ENGINES 3"
+    )
+    bundle_adjustment: Literal["tuned", "colmap"] = option(
+        "tuned", "bundle adjustment during the window search", source="ENGINES 3"
+    )
+    search_tracks: int = option(
+        0, "keypoints per image that take part in the search, longest tracks first; 0 = all", source="measured", ge=0
+    )
+
+
+class ModelSettings(Group):
+    """From the winning case to the final model."""
+
+    confirm: bool = option(True, "map the winner again from scratch with COLMAP's bundle adjustment", source="ENGINES 3")
+    register_rest: bool = option(True, "go on mapping over all remaining frames", source="METHOD")
+    final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="ENGINES 7")
+    refine_principal_point: Literal["auto", "never"] = option(
+        "auto", "free the principal point in the last adjustment when it is well determined", source="ENGINES 7"
+    )
+
+
+class DenseSettings(Group):
+    """Depth maps."""
+
+    method: Literal["auto", "cpu", "cuda"] = option(
+        "auto", "own PatchMatch on the CPU, COLMAP's on CUDA, or CUDA where pycolmap has it", source="METHOD"
+    )
+    views: int = option(60, "depth maps, spread over the model; 0 = every registered image", source="time budget", ge=0)
+    sources: int = option(5, "source images per depth map", source="METHOD: 4-6; thesis 20", ge=1, le=50)
+    max_image_size_px: int = option(2000, "longer side of undistorted images", unit="px", source="thesis", ge=64)
+    scale: float = option(1.0, "further scale of undistorted images", source="draft uses 0.5", gt=0, le=1)
+    levels: int = option(3, "image scales, coarse to fine", source="ENGINES 4", ge=1, le=5)
+    iterations: int = option(3, "red-black sweeps per scale", source="ENGINES 4", ge=1, le=10)
+    best_views: int = option(2, "cost is the mean over this many best source views", source="ENGINES 4", ge=1, le=10)
+    geometric_passes: int = option(1, "passes with geometric consistency", source="ENGINES 4", ge=0, le=3)
+    min_ncc: float = option(0.3, "estimates correlating less are dropped", source="measured", ge=-1, le=1)
+    min_triangulation_deg: float = option(3.0, "estimates seen under a smaller angle are dropped", unit="deg", source="COLMAP", ge=0)
+    min_consistent: int = option(2, "source views that must agree", source="COLMAP", ge=0)
+
+
+class FusionSettings(Group):
+    """Fusion of depth maps into one point cloud (COLMAP)."""
+
+    min_num_pixels: int = option(3, "pixels per fused point, at least", source="ENGINES 4; COLMAP 5", ge=1)
+    max_reproj_error_px: float = option(2.0, "reprojection error of fused pixels", unit="px", source="COLMAP", gt=0)
+    max_depth_error: float = option(0.01, "relative depth difference of fused pixels", source="COLMAP", gt=0)
+    max_normal_error_deg: float = option(10.0, "angle between normals of fused pixels", unit="deg", source="COLMAP", gt=0)
+
+
+class MeshSettings(Group):
+    """Surface from the cloud (COLMAP's Poisson)."""
+
+    poisson_depth: int = option(10, "octree depth", source="METRICS; COLMAP 13", ge=4, le=14)
+    poisson_trim: float = option(6.0, "Poisson's own trimming, in octree depth", source="METRICS; COLMAP 10", ge=0)
+    keep_unsupported: bool = option(False, "map on the full Poisson surface", source="thesis: on")
+    support_spacings: float = option(
+        7.5, "farther from the cloud than this many median point spacings is not supported", source="METRICS", gt=0
+    )
+    keep_largest_component: bool = option(False, "keep only the largest connected part", source="thesis: off")
+
+
+class MappingSettings(Group):
+    """Detections onto the surface."""
+
+    method: Literal["thesis"] = option("thesis", "rule that places a detection", source="thesis")
+    box_frame: Literal["source", "crop"] = option(
+        "source", "frame in which boxes are normalised (crop repeats the thesis's reading)", source="METHOD"
+    )
+    time_rule: Literal["pts", "average_rate"] = option(
+        "pts", "time of a frame: presentation time, or index / average rate", source="METHOD"
+    )
+    time_tolerance_s: float = option(0.4, "nearest registered image in time, nearer than", unit="s", source="thesis", gt=0)
+    radius_fraction: float = option(0.01, "colouring radius / mesh diagonal (eq. 3.1)", source="thesis", gt=0, le=1)
+    sigma_fraction: float = option(0.35, "sigma / colouring radius (eq. 3.2)", source="thesis", gt=0)
+
+
+class TimelineSettings(Group):
+    """Events and clusters."""
+
+    radius_fraction: float = option(0.02, "cluster radius / mesh diagonal (eq. 3.3)", source="thesis", gt=0, le=1)
+
+
+class ComputeSettings(Group):
+    """Work, not method: none of these is meant to change what is found."""
+
+    threads: int = option(0, "threads of stages that are not fanned out; 0 = all cores", source="machine", ge=0)
+    chunk_frames: int = option(48, "frames per task of features and matches", unit="frames", source="measured", ge=1)
+    chunk_views: int = option(8, "depth maps per task", unit="views", source="measured", ge=1)

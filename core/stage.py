@@ -1,0 +1,74 @@
+"""What a stage is: typed input in, files below its own folder and a few facts out.
+
+A stage is a function `run(task: StageTask) -> StageResult`. It is deterministic for a seed, writes only
+below `task.out`, reads no environment, clock or global, reports progress through `task.progress` and
+stops with `Cancelled` soon after `task.cancelled()` turns true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from core.errors import Cancelled, StageFailed
+from core.settings import Settings
+
+Facts = dict[str, Any]
+
+
+def _no_progress(fraction: float, message: str) -> None:
+    """Discard progress; the default for direct calls and tests."""
+
+
+@dataclass(frozen=True)
+class StageTask:
+    """One task, ready to run in any process on any machine."""
+
+    key: str
+    """Name in the plan, e.g. ``coarse/seg_000_0000_0180``."""
+    args: Mapping[str, Any]
+    """JSON arguments fixed by the plan (a chunk's range, a window's name)."""
+    settings: Settings
+    inputs: Mapping[str, Path]
+    """Result folder of every finished task this one depends on, by task key."""
+    facts: Mapping[str, Facts]
+    """Facts of the same tasks, by task key."""
+    video: Path
+    annotations: Path | None
+    out: Path
+    """Existing empty folder; everything the stage writes lies below it."""
+    threads: int = 1
+    """How many threads the stage may use."""
+    progress: Callable[[float, str], None] = _no_progress
+    """Called with a fraction in [0, 1] and a short message."""
+    cancelled: Callable[[], bool] = field(default=lambda: False)
+
+    def report(self, done: float, total: float, message: str = "") -> None:
+        """Report progress and stop here when the task was cancelled."""
+        if self.cancelled():
+            raise Cancelled("the task was cancelled", where=self.key)
+        self.progress(min(1.0, done / total) if total else 1.0, message)
+
+    def input(self, key: str) -> Path:
+        """Result folder of a dependency; `StageFailed` when it has none."""
+        try:
+            return self.inputs[key]
+        except KeyError:
+            raise StageFailed(f"task {self.key} needs the result of {key}", where=self.key) from None
+
+    def fan_in(self, stage: str) -> list[tuple[str, Path]]:
+        """(key, folder) of every finished task of a fanned-out stage, ordered by key."""
+        prefix = stage + "/"
+        return sorted((key, path) for key, path in self.inputs.items() if key.startswith(prefix))
+
+
+@dataclass(frozen=True)
+class StageResult:
+    """What a stage hands on beside its files: small JSON facts, free of clock times and machine paths.
+
+    Facts steer the plan and fill the report; with the hashes of the files they make the result's digest.
+    """
+
+    facts: Facts = field(default_factory=dict)

@@ -114,7 +114,8 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     step = settings.compute.chunk_frames
     chunks = [(start, min(start + step, n_frames)) for start in range(0, n_frames, step)]
     features = [
-        TaskSpec(f"features/{i:03d}", ("frames", "annotations"), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)
+        TaskSpec(f"features/{i:03d}", ("frames", "annotations"), {"start": a, "end": b})
+        for i, (a, b) in enumerate(chunks)
     ]
     feature_keys = tuple(task.key for task in features)
     tasks = list(features)
@@ -172,7 +173,12 @@ def _case_key(window: Window) -> str:
 
 def _case(window: Window, depends: tuple[str, ...]) -> TaskSpec:
     """One reconstruction case; a failed case is an outcome, the search goes on without it."""
-    args: dict[str, Any] = {"name": window.name, "start": window.start, "end": window.end, "warm_from": window.warm_from}
+    args: dict[str, Any] = {
+        "name": window.name,
+        "start": window.start,
+        "end": window.end,
+        "warm_from": window.warm_from,
+    }
     if window.warm_from:
         depends = (*depends, f"coarse/{window.warm_from}")
     return TaskSpec(_case_key(window), depends, args, optional=True)

@@ -51,7 +51,9 @@ def coarse_windows(n_frames: int, settings: WindowSettings) -> list[Window]:
     return windows
 
 
-def refined_windows(best: tuple[int, int], n_frames: int, settings: WindowSettings, warm_from: str = "") -> list[Window]:
+def refined_windows(
+    best: tuple[int, int], n_frames: int, settings: WindowSettings, warm_from: str = ""
+) -> list[Window]:
     """Refined windows around the best coarse interval: full windows only.
 
     The interval is widened by the margin and clipped to the clip; a range shorter than one window is

@@ -79,8 +79,12 @@ class MatchSettings(Group):
     method: Literal["mutual_nearest", "lightglue", "auto"] = option(
         "auto", "mutual nearest neighbours, LightGlue, or LightGlue only where verification is weak", source="METHOD"
     )
-    window: int = option(5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1)
-    ratio: float = option(0.98, "mutual nearest: distance ratio first / second must be below", source="measured", gt=0, le=1)
+    window: int = option(
+        5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1
+    )
+    ratio: float = option(
+        0.98, "mutual nearest: distance ratio first / second must be below", source="measured", gt=0, le=1
+    )
     auto_min_inliers: int = option(
         100, "auto: fewer verified inliers than this call for LightGlue", source="measured", ge=0
     )
@@ -136,7 +140,9 @@ class MapperSettings(Group):
 class ModelSettings(Group):
     """From the winning case to the final model."""
 
-    confirm: bool = option(True, "map the winner again from scratch with COLMAP's bundle adjustment", source="ENGINES 3")
+    confirm: bool = option(
+        True, "map the winner again from scratch with COLMAP's bundle adjustment", source="ENGINES 3"
+    )
     register_rest: bool = option(True, "go on mapping over all remaining frames", source="METHOD")
     final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="ENGINES 7")
     refine_principal_point: Literal["auto", "never"] = option(
@@ -159,7 +165,9 @@ class DenseSettings(Group):
     best_views: int = option(2, "cost is the mean over this many best source views", source="ENGINES 4", ge=1, le=10)
     geometric_passes: int = option(1, "passes with geometric consistency", source="ENGINES 4", ge=0, le=3)
     min_ncc: float = option(0.3, "estimates correlating less are dropped", source="measured", ge=-1, le=1)
-    min_triangulation_deg: float = option(3.0, "estimates seen under a smaller angle are dropped", unit="deg", source="COLMAP", ge=0)
+    min_triangulation_deg: float = option(
+        3.0, "estimates seen under a smaller angle are dropped", unit="deg", source="COLMAP", ge=0
+    )
     min_consistent: int = option(2, "source views that must agree", source="COLMAP", ge=0)
 
 
@@ -169,7 +177,9 @@ class FusionSettings(Group):
     min_num_pixels: int = option(3, "pixels per fused point, at least", source="ENGINES 4; COLMAP 5", ge=1)
     max_reproj_error_px: float = option(2.0, "reprojection error of fused pixels", unit="px", source="COLMAP", gt=0)
     max_depth_error: float = option(0.01, "relative depth difference of fused pixels", source="COLMAP", gt=0)
-    max_normal_error_deg: float = option(10.0, "angle between normals of fused pixels", unit="deg", source="COLMAP", gt=0)
+    max_normal_error_deg: float = option(
+        10.0, "angle between normals of fused pixels", unit="deg", source="COLMAP", gt=0
+    )
 
 
 class MeshSettings(Group):
@@ -194,7 +204,9 @@ class MappingSettings(Group):
     time_rule: Literal["pts", "average_rate"] = option(
         "pts", "time of a frame: presentation time, or index / average rate", source="METHOD"
     )
-    time_tolerance_s: float = option(0.4, "nearest registered image in time, nearer than", unit="s", source="thesis", gt=0)
+    time_tolerance_s: float = option(
+        0.4, "nearest registered image in time, nearer than", unit="s", source="thesis", gt=0
+    )
     radius_fraction: float = option(0.01, "colouring radius / mesh diagonal (eq. 3.1)", source="thesis", gt=0, le=1)
     sigma_fraction: float = option(0.35, "sigma / colouring radius (eq. 3.2)", source="thesis", gt=0)
 

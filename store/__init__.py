@@ -1,0 +1,1 @@
+"""What is remembered: settings, models, repositories, the plan, artifacts."""

@@ -1,0 +1,1 @@
+"""From the fused cloud to the surface: Poisson meshing, support, PLY files."""

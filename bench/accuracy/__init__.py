@@ -1,0 +1,1 @@
+"""Scores of a result folder against ground truth: one definition for every table."""

@@ -1,0 +1,72 @@
+"""Flags: what a reader must know before trusting a result, from one documented list of codes.
+
+A flag is a small fact. Stages put flags into their facts, the report collects them into `quality.json`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from core.errors import StageFailed
+
+Severity = Literal["info", "warning", "error"]
+SEVERITIES: tuple[Severity, ...] = ("info", "warning", "error")
+
+FLAG_CODES: Mapping[str, str] = {
+    "interval_clipped": "the preset's interval reached beyond the video and was cut to it",
+    "truncated_video": "the video is damaged; only its decodable part was used",
+    "boxes_in_crop_frame": "boxes were scaled to the cropped image, as the thesis does; most places are wrong by it",
+    "principal_point_at_crop_centre": "the principal point started at the crop's centre, as the thesis does",
+    "no_parallax": "the views hardly differ in place (static or only turning camera): no depth can be known",
+    "bent_model": "the model's rotations disagree with those measured between pairs of images",
+    "few_points": "the model has few 3D points per registered image",
+    "coverage_low": "few of the frames are registered in the model",
+    "focal_implausible": "the focal length found gives a field of view that no borescope has",
+    "distortion_implausible": "the lens distortion found folds the image: radius does not grow with angle",
+    "high_reprojection_error": "the model fits its keypoints badly",
+}
+"""Every code that can appear, with its meaning. A code that is not here cannot be raised."""
+
+
+@dataclass(frozen=True)
+class Flag:
+    """One finding of a check.
+
+    `value` was measured and is compared with `threshold` (same unit, that of the check); both are None
+    where the finding is not a number. `where` names what is meant, e.g. ``frames 120-180``.
+    """
+
+    code: str
+    severity: Severity
+    value: float | None = None
+    threshold: float | None = None
+    where: str = ""
+
+    def __post_init__(self) -> None:
+        if self.code not in FLAG_CODES or self.severity not in SEVERITIES:
+            raise StageFailed(f"unknown flag {self.severity}:{self.code}", where="flags")
+
+    @property
+    def meaning(self) -> str:
+        """One clause for people."""
+        return FLAG_CODES[self.code]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The form of `quality.json`: code, severity, value, threshold, where; numbers rounded to 6 digits."""
+        row = asdict(self)
+        for name in ("value", "threshold"):
+            if row[name] is not None:
+                row[name] = float(f"{row[name]:.6g}")
+        return row
+
+    @classmethod
+    def from_dict(cls, row: Mapping[str, Any]) -> Flag:
+        """Rebuild from `to_dict`; unknown codes and severities raise `StageFailed`."""
+        return cls(row["code"], row["severity"], row.get("value"), row.get("threshold"), row.get("where", ""))
+
+
+def worst(flags: list[Flag]) -> Severity | None:
+    """The highest severity among `flags`; None without flags."""
+    return max((flag.severity for flag in flags), key=SEVERITIES.index, default=None)

@@ -1,0 +1,1 @@
+"""Sparse reconstruction: COLMAP models from the verified view graph."""

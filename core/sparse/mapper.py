@@ -1,0 +1,200 @@
+"""COLMAP's incremental mapper as plain functions: options, images in, models out, best by score.
+
+A cache (`pycolmap.DatabaseCache`) holds the keypoints and the verified correspondences of the images that
+take part; every function below works on exactly its images. With ``threads=1`` and a fixed seed a repeated
+call gives bit-identical models (COLMAP issues #3402, #3544).
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pycolmap
+
+from core.settings.groups import MapperSettings
+
+Progress = Callable[[int, int], None]
+"""Called with (registered images, images offered); may raise to stop the mapping."""
+
+FAR_PX = 1e6
+"""A point with a larger mean reprojection error lies at or behind infinity and says nothing about the model."""
+
+WHOLE_SHARE = 0.9
+"""A model with at least this share of the images is taken as whole: no second start is tried."""
+
+
+@dataclass(frozen=True)
+class ModelStats:
+    """What a sparse model is judged by. Errors are over points with a finite mean error."""
+
+    registered_images: int
+    points3D: int
+    mean_reprojection_error_px: float
+    median_reprojection_error_px: float
+    mean_track_length: float
+
+    @property
+    def score(self) -> tuple[int, int]:
+        """The thesis's score S(M) = (registered images, 3D points), compared lexicographically."""
+        return self.registered_images, self.points3D
+
+
+def open_cache(database: Path, names: Iterable[str] = (), min_num_matches: int = 15) -> Any:
+    """`DatabaseCache` of the named images (all when empty) and their verified pairs.
+
+    Pairs with fewer than `min_num_matches` inliers are left out (COLMAP's default, 15).
+    """
+    options = pycolmap.DatabaseCacheOptions()
+    options.min_num_matches = min_num_matches
+    options.image_names = set(names)
+    with pycolmap.Database.open(database) as source:
+        return pycolmap.DatabaseCache.create(source, options)
+
+
+def mapper_options(settings: MapperSettings, *, threads: int, seed: int, tuned: bool) -> Any:
+    """`IncrementalPipelineOptions` with the thesis's thresholds.
+
+    `tuned` spends less on bundle adjustment while the model grows (ENGINES section 3: equal output at about
+    two thirds of the cost, the rest of the gain comes from a known initial pair) and stops at one model when
+    that one is whole. Without it everything else is COLMAP's default.
+    """
+    options = pycolmap.IncrementalPipelineOptions()
+    options.min_model_size = settings.min_model_size
+    options.num_threads = threads
+    options.random_seed = seed
+    options.extract_colors = False
+    options.mapper.init_min_num_inliers = settings.init_min_num_inliers
+    options.mapper.abs_pose_min_num_inliers = settings.abs_pose_min_num_inliers
+    options.mapper.abs_pose_min_inlier_ratio = settings.abs_pose_min_inlier_ratio
+    if tuned:
+        options.ba_global_frames_ratio = 1.4
+        options.ba_global_points_ratio = 1.4
+        options.ba_global_max_refinements = 2
+        options.ba_global_max_num_iterations = 25
+        options.ba_global_function_tolerance = 1e-5
+        options.ba_local_max_num_iterations = 15
+        options.ba_local_function_tolerance = 1e-5
+    return options
+
+
+def map_images(
+    cache: Any,
+    options: Any,
+    *,
+    pairs: Sequence[tuple[int, int]] = (),
+    start_model: Any | None = None,
+    progress: Progress | None = None,
+) -> list[Any]:
+    """All models that the images of `cache` give; empty when none.
+
+    Args:
+        cache: from `open_cache`.
+        options: from `mapper_options`.
+        pairs: image ids of initial pairs tried in turn; a whole model ends the search. When none of them
+            gives a model of half of the images, COLMAP's own search follows.
+        start_model: go on from this model instead (set ``options.fix_existing_frames`` to hold its poses).
+            Its frames that are not in `cache` are dropped; it is not changed.
+        progress: see `Progress`.
+    """
+    if start_model is not None:
+        return _grow(cache, options, restrict_model(start_model, _names(cache)), progress)
+    models: list[Any] = []
+    for pair in pairs:
+        options.init_image_id1, options.init_image_id2 = pair
+        models += _grow(cache, options, pycolmap.Reconstruction(), progress)
+        if _largest(models) >= WHOLE_SHARE * cache.num_images():
+            break
+    options.init_image_id1 = options.init_image_id2 = -1
+    if _largest(models) < 0.5 * cache.num_images():
+        models += _search(cache, options, progress)
+    return models
+
+
+def best_model(models: Sequence[Any]) -> Any | None:
+    """The model with the highest score; the first of equals; None when there is none."""
+    return max(models, key=lambda model: model_stats(model).score, default=None)
+
+
+def model_stats(model: Any) -> ModelStats:
+    """Registered images, points and errors of a model; its points' errors are computed anew."""
+    model.update_point_3d_errors()
+    points = model.points3D.values()
+    errors = np.array([point.error for point in points], dtype=np.float64)
+    lengths = np.array([point.track.length() for point in points], dtype=np.int64)
+    near = np.isfinite(errors) & (errors >= 0) & (errors < FAR_PX)
+    if not near.any():
+        return ModelStats(int(model.num_reg_images()), 0, 0.0, 0.0, 0.0)
+    return ModelStats(
+        registered_images=int(model.num_reg_images()),
+        points3D=int(near.sum()),
+        mean_reprojection_error_px=float(errors[near].mean()),
+        median_reprojection_error_px=float(np.median(errors[near])),
+        mean_track_length=float(lengths[near].mean()),
+    )
+
+
+def registered_names(model: Any) -> list[str]:
+    """Names of the registered images, sorted."""
+    return sorted(model.image(image_id).name for image_id in model.reg_image_ids())
+
+
+def restrict_model(model: Any, names: Iterable[str]) -> Any:
+    """Copy of `model` with only the named images; points keep the observations that remain."""
+    keep = set(names)
+    part = pycolmap.Reconstruction(model)
+    for image_id in list(part.reg_image_ids()):
+        image = part.image(image_id)
+        if image.name not in keep:
+            part.deregister_frame(image.frame_id)
+    # Written files hold registered images only: reading them back forgets the others, whose entries the
+    # mapper would otherwise look up in the correspondence graph.
+    with tempfile.TemporaryDirectory(prefix="model-") as folder:
+        part.write_binary(folder)
+        return pycolmap.Reconstruction(folder)
+
+
+def _grow(cache: Any, options: Any, model: Any, progress: Progress | None) -> list[Any]:
+    """Register images into `model` (from the options' initial pair when it is empty) until none is left."""
+    pipeline = pycolmap.IncrementalPipeline(options, cache, pycolmap.ReconstructionManager())
+    mapper = pycolmap.IncrementalMapper(cache)
+    _watch(pipeline, lambda: int(model.num_reg_images()), cache, progress)
+    pipeline.reconstruct_sub_model(mapper, options.get_mapper(), model)
+    mapper.end_reconstruction(False)
+    return [model] if model.num_reg_images() >= options.min_model_size else []
+
+
+def _search(cache: Any, options: Any, progress: Progress | None) -> list[Any]:
+    """COLMAP's pipeline as it is: its own initial pairs, as many models as the options allow."""
+    manager = pycolmap.ReconstructionManager()
+    pipeline = pycolmap.IncrementalPipeline(options, cache, manager)
+    _watch(
+        pipeline,
+        lambda: max((manager.get(i).num_reg_images() for i in range(manager.size())), default=0),
+        cache,
+        progress,
+    )
+    pipeline.run()
+    # COLMAP keeps a first model below min_model_size as well (ENGINES section 7): filter by size here.
+    models = [manager.get(i) for i in range(manager.size())]
+    return [model for model in models if model.num_reg_images() >= options.min_model_size]
+
+
+def _watch(pipeline: Any, count: Callable[[], int], cache: Any, progress: Progress | None) -> None:
+    if progress is None:
+        return
+    total = int(cache.num_images())
+    event = pycolmap.IncrementalPipelineCallback.NEXT_IMAGE_REG_CALLBACK
+    pipeline.add_callback(event.value if hasattr(event, "value") else int(event), lambda: progress(count(), total))
+
+
+def _largest(models: Sequence[Any]) -> int:
+    return max((int(model.num_reg_images()) for model in models), default=0)
+
+
+def _names(cache: Any) -> list[str]:
+    return [image.name for image in cache.images.values()]

@@ -1,0 +1,154 @@
+"""Where detections ended up: true defect of each box, mapped share, wrong places, false boxes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.accuracy.align import Sim3
+from bench.accuracy.truth import TrueBox, Truth
+
+F64 = NDArray[np.float64]
+
+MIN_IOU = 0.2
+WRONG_CHORD_SHARE = 0.10
+
+
+@dataclass(frozen=True)
+class Placement:
+    """One detection against the truth."""
+
+    outcome: str
+    rung: str
+    true_defect: int | None
+    """None for a false box."""
+    error_mm: float | None
+    """Distance to the true place; None when unplaced or false."""
+    wrong: bool
+    """Placed, and farther than 10 % of the chord from every point of the true patch."""
+    confidence: float | None
+    defect_id: int | None
+
+    @property
+    def mapped(self) -> bool:
+        """Placed with full trust, by the row's own word."""
+        return self.outcome == "mapped"
+
+    @property
+    def right(self) -> bool:
+        """Placed, on a true defect, and not wrong. A false box has no right place."""
+        return self.true_defect is not None and self.error_mm is not None and not self.wrong
+
+
+def box_iou(a: F64, b: F64) -> float:
+    """Intersection over union of two boxes (x1, y1, x2, y2); 0 when they only touch."""
+    width, height = np.minimum(a[2:], b[2:]) - np.maximum(a[:2], b[:2])
+    if width <= 0 or height <= 0:
+        return 0.0
+    area_a, area_b = (a[2] - a[0]) * (a[3] - a[1]), (b[2] - b[0]) * (b[3] - b[1])
+    return float(width * height / (area_a + area_b - width * height))
+
+
+def true_defect(box_px: F64, visible: list[TrueBox]) -> int | None:
+    """The visible defect with the largest IoU, at least 0.2; None for a false box."""
+    overlaps = [(box_iou(box_px, item.box_px), -i, item.defect) for i, item in enumerate(visible)]
+    best = max(overlaps, default=(0.0, 0, 0))
+    return best[2] if best[0] >= MIN_IOU else None
+
+
+def place_detections(
+    rows: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Sim3 | None]
+) -> list[Placement]:
+    """Compare every row of `detections.json` with the truth; `alignments` by model number."""
+    scale = np.array([truth.lens.width, truth.lens.height] * 2, np.float64)
+    placements = []
+    for row in rows:
+        frame = truth.frame_at(float(row["time_s"]))
+        box = np.array([row[name] for name in ("box_x1", "box_y1", "box_x2", "box_y2")], np.float64) * scale
+        defect = true_defect(box, truth.boxes[frame]) if frame is not None else None
+        point = aligned_point([row.get(axis) for axis in "xyz"], row.get("model"), alignments)
+        error, wrong = None, False
+        if defect is not None and point is not None:
+            error = float(np.linalg.norm(point - truth.defects[defect].center))
+            wrong = patch_distance(point, truth.defects[defect].patch) > WRONG_CHORD_SHARE * truth.chord
+        confidence, record = row.get("confidence"), row.get("defect_id")
+        placements.append(
+            Placement(
+                outcome=str(row["outcome"]),
+                rung=str(row.get("rung") or ""),
+                true_defect=defect,
+                error_mm=error,
+                wrong=wrong,
+                confidence=None if confidence is None else float(confidence),
+                defect_id=None if record is None else int(record),
+            )
+        )
+    return placements
+
+
+def aligned_point(xyz: list[Any], model: Any, alignments: Mapping[int, Sim3 | None]) -> F64 | None:
+    """(3,) place in the true frame; None without coordinates or without an alignment of its model."""
+    sim3 = alignments.get(0 if model in (None, "") else int(model))
+    if sim3 is None or any(value is None for value in xyz):
+        return None
+    return np.asarray(sim3.apply(np.array([xyz], np.float64))[0])
+
+
+def patch_distance(point: F64, patch: F64) -> float:
+    """Distance from a point to the nearest point of a patch."""
+    return float(np.linalg.norm(patch - point, axis=1).min())
+
+
+def score_placements(placements: list[Placement], persistence: Mapping[int, float | None]) -> dict[str, Any]:
+    """Mapped and wrong shares, errors by rung, and what became of false boxes."""
+    placeable = [item for item in placements if item.true_defect is not None]
+    mapped = [item for item in placeable if item.mapped]
+    rungs = sorted({item.rung for item in placeable if item.error_mm is not None})
+    return {
+        "detections": len(placements),
+        "outcomes": dict(sorted(Counter(item.outcome for item in placements).items())),
+        "placeable": len(placeable),
+        "mapped_placeable": len(mapped),
+        "mapped_share": _share(len(mapped), len(placeable)),
+        "wrong_mapped": sum(item.wrong for item in mapped),
+        "wrong_mapped_share": _share(sum(item.wrong for item in mapped), len(mapped)),
+        **_errors(mapped),
+        "by_rung": {rung: _rung([item for item in placeable if item.rung == rung]) for rung in rungs},
+        "false_boxes": _false_boxes([item for item in placements if item.true_defect is None], persistence),
+    }
+
+
+def _rung(items: list[Placement]) -> dict[str, Any]:
+    placed = [item for item in items if item.error_mm is not None]
+    wrong = sum(item.wrong for item in placed)
+    return {"placed": len(placed), "wrong": wrong, "wrong_share": _share(wrong, len(placed)), **_errors(placed)}
+
+
+def _errors(items: list[Placement]) -> dict[str, float | None]:
+    errors = [item.error_mm for item in items if item.error_mm is not None]
+    return {
+        "position_median_mm": float(np.median(errors)) if errors else None,
+        "position_p95_mm": float(np.percentile(errors, 95)) if errors else None,
+    }
+
+
+def _false_boxes(items: list[Placement], persistence: Mapping[int, float | None]) -> dict[str, Any]:
+    mapped = [item for item in items if item.mapped]
+    confident = [item for item in mapped if (item.confidence or 0.0) > 0.5]
+    lasting = [item for item in confident if (persistence.get(item.defect_id or 0) or 0.0) > 0.5]
+    lasting = [item for item in lasting if item.defect_id is not None]
+    return {
+        "count": len(items),
+        "mapped_share": _share(len(mapped), len(items)),
+        "mapped_confident_share": _share(len(confident), len(items)),
+        "mapped_confident_persistent_share": _share(len(lasting), len(items)),
+    }
+
+
+def _share(part: int, whole: int) -> float | None:
+    return part / whole if whole else None

@@ -1,0 +1,104 @@
+"""A result folder as the outputs contract describes it, read for scoring."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pycolmap
+from numpy.typing import NDArray
+
+from core.errors import BadInput
+from core.surface.ply import Mesh, read_mesh
+
+F64 = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ResultModel:
+    """One sparse model with its surface, in its own world frame."""
+
+    number: int
+    source_indices: list[int]
+    """Source frame of every registered image."""
+    centers: F64
+    """(n, 3) camera centres."""
+    rotations: F64
+    """(n, 3, 3) world_from_cam."""
+    mesh: Mesh | None
+    cloud: Mesh | None
+
+
+@dataclass(frozen=True)
+class Result:
+    """A finished run."""
+
+    models: dict[int, ResultModel]
+    """By number; 0 is the headline model. Empty when nothing could be reconstructed."""
+    detections: list[dict[str, Any]]
+    """Rows of `mapping/detections.json`."""
+    defects: list[dict[str, Any]]
+    """Records of `mapping/defects.json`."""
+
+
+def load_result(folder: Path) -> Result:
+    """Read a result folder; missing models and mapping files are an outcome, a missing `frames.csv` is `BadInput`."""
+    sources = _source_index_by_name(folder / "frames.csv")
+    models: dict[int, ResultModel] = {}
+    roots = {0: folder}
+    if (folder / "models").is_dir():
+        roots.update({int(path.name): path for path in (folder / "models").iterdir() if path.name.isdigit()})
+    for number, root in sorted(roots.items()):
+        if (root / "sparse").is_dir():
+            models[number] = _load_model(number, root, sources)
+    return Result(models, _rows(folder / "mapping/detections.json"), _rows(folder / "mapping/defects.json"))
+
+
+def _source_index_by_name(path: Path) -> dict[str, int]:
+    if not path.is_file():
+        raise BadInput("this is not a result folder: it has no frames.csv", where="frames.csv")
+    with path.open(newline="") as stream:
+        try:
+            return {f"{int(row['index']):04d}.jpg": int(row["source_index"]) for row in csv.DictReader(stream)}
+        except (KeyError, ValueError) as error:
+            raise BadInput(f"frames.csv is not in the expected form: {error!r}", where="frames.csv") from None
+
+
+def _load_model(number: int, root: Path, sources: dict[str, int]) -> ResultModel:
+    try:
+        model = pycolmap.Reconstruction(root / "sparse")
+    except (ValueError, RuntimeError) as error:
+        raise BadInput(f"the sparse model {number} cannot be read: {error}", where="sparse") from None
+    images = sorted((model.image(key) for key in model.reg_image_ids()), key=lambda image: str(image.name))
+    unknown = [image.name for image in images if image.name not in sources]
+    if unknown:
+        raise BadInput(f"image {unknown[0]} of model {number} is not in frames.csv", where="sparse")
+    world_from_cam = [image.cam_from_world().inverse() for image in images]
+    return ResultModel(
+        number=number,
+        source_indices=[sources[image.name] for image in images],
+        centers=np.array([pose.translation for pose in world_from_cam], np.float64).reshape(-1, 3),
+        rotations=np.array([pose.rotation.matrix() for pose in world_from_cam], np.float64).reshape(-1, 3, 3),
+        mesh=_surface(root / "dense/mesh_poisson.ply"),
+        cloud=_surface(root / "dense/fused.ply"),
+    )
+
+
+def _surface(path: Path) -> Mesh | None:
+    return read_mesh(path) if path.is_file() else None
+
+
+def _rows(path: Path) -> list[dict[str, Any]]:
+    if not path.is_file():
+        return []
+    try:
+        rows = json.loads(path.read_text())
+    except ValueError as error:
+        raise BadInput(f"{path.name} cannot be read: {error}", where=path.name) from None
+    if not isinstance(rows, list):
+        raise BadInput(f"{path.name} is not a top-level array", where=path.name)
+    return rows

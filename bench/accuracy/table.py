@@ -1,0 +1,76 @@
+"""A score as a table for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+
+def format_score(score: dict[str, Any]) -> str:
+    """Lines of name and value; a dash is what could not be measured."""
+    rows = list(_model_rows(score, ""))
+    rows += _placement_rows(score["placement"])
+    defects = score["defects"]
+    rows.append(("defects found / expected", f"{defects['found']} / {defects['expected']}"))
+    rows.append(("defects split, extra, exact", f"{defects['split']}, {defects['extra']}, {_text(defects['exact'])}"))
+    confidence = score["confidence"]
+    rows.append(("confidence ECE, AUROC", f"{_text(confidence['ece'])}, {_text(confidence['auroc'])}"))
+    for number, model in score["models"].items():
+        rows += _model_rows(model, f"model {number}: ")
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _model_rows(model: dict[str, Any], prefix: str) -> Iterator[tuple[str, str]]:
+    frames = model["frames"]
+    yield f"{prefix}frames registered", f"{frames['registered']} of {frames['source_frames']}"
+    yield f"{prefix}registered_share", _text(frames["registered_share"])
+    yield f"{prefix}registered_annotated_share", _text(frames["registered_annotated_share"])
+    cameras = model["cameras"] or {}
+    for what, unit in (("position", "mm"), ("rotation", "deg")):
+        values = (_text(cameras.get(f"{what}_{rank}_{unit}")) for rank in ("median", "p95"))
+        yield f"{prefix}camera {what} median / 95 % ({unit})", " / ".join(values)
+    for name in ("mesh", "cloud"):
+        surface = model[name] or {}
+        yield (
+            f"{prefix}{name} accuracy median / 95 % (mm)",
+            " / ".join(_text(surface.get(key)) for key in ("accuracy_median_mm", "accuracy_p95_mm")),
+        )
+        yield f"{prefix}{name} completeness median (mm)", _text(surface.get("completeness_median_mm"))
+        for tau in ("0.25%", "0.5%", "1%"):
+            scores = surface.get(tau) or {}
+            values = (_text(scores.get(key)) for key in ("precision", "recall", "f1"))
+            yield f"{prefix}{name} precision / recall / F1 at {tau} of chord", " / ".join(values)
+
+
+def _placement_rows(placement: dict[str, Any]) -> list[tuple[str, str]]:
+    false = placement["false_boxes"]
+    rows = [
+        ("detections", f"{placement['detections']} ({placement['placeable']} placeable, {false['count']} false boxes)"),
+        ("outcomes", ", ".join(f"{key} {count}" for key, count in placement["outcomes"].items()) or "-"),
+        ("mapped_share", _text(placement["mapped_share"])),
+        ("wrong_mapped_share", _text(placement["wrong_mapped_share"])),
+        (
+            "mapped position median / 95 % (mm)",
+            f"{_text(placement['position_median_mm'])} / {_text(placement['position_p95_mm'])}",
+        ),
+    ]
+    for rung, scores in placement["by_rung"].items():
+        rows.append(
+            (
+                f"  rung {rung or '-'}: placed, wrong, median / 95 % (mm)",
+                f"{scores['placed']}, {scores['wrong']}, "
+                f"{_text(scores['position_median_mm'])} / {_text(scores['position_p95_mm'])}",
+            )
+        )
+    shares = ("mapped_share", "mapped_confident_share", "mapped_confident_persistent_share")
+    rows.append(("false boxes mapped / confident / persistent", " / ".join(_text(false[key]) for key in shares)))
+    return rows
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

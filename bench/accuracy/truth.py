@@ -1,0 +1,134 @@
+"""Ground truth of a rendered clip: exact cameras and lens, true surface, true defects."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import BadInput, StageFailed
+from core.surface.ply import read_mesh
+
+F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
+
+MM_PER_M = 1000.0
+
+
+@dataclass(frozen=True)
+class TrueDefect:
+    """One defect of the scene and the true surface that shows it; lengths in mm."""
+
+    number: int
+    center: F64
+    """(3,) mean of the patch (`surface_center`)."""
+    patch: F64
+    """(n, 3) points of the patch (`surface_points`)."""
+
+
+@dataclass(frozen=True)
+class TrueBox:
+    """A defect visible in one frame."""
+
+    defect: int
+    box_px: F64
+    """(4,) x1, y1, x2, y2 on the source frame."""
+
+
+@dataclass(frozen=True)
+class Lens:
+    """A pixel at r px from the image centre looks ``theta = r / F + K3 r^3`` off the axis."""
+
+    width: int
+    height: int
+    focal_px: float
+    k3: float
+
+    def rays(self, x_px: F64, y_px: F64) -> F64:
+        """(n, 3) unit viewing directions of image points in the camera frame (OpenCV axes)."""
+        dx, dy = x_px - self.width / 2, y_px - self.height / 2
+        r = np.hypot(dx, dy)
+        theta = r / self.focal_px + self.k3 * r**3
+        scale = np.where(r > 0, np.sin(theta) / np.where(r > 0, r, 1.0), 1.0 / self.focal_px)
+        return np.stack([dx * scale, dy * scale, np.cos(theta)], axis=1)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """Everything known about a clip; lengths in mm."""
+
+    lens: Lens
+    roi: tuple[float, float, float, float]
+    fps: float
+    centers: F64
+    """(n, 3) camera centres of every source frame."""
+    rotations: F64
+    """(n, 3, 3) world_from_cam."""
+    chord: float
+    """Mean of root and tip chord."""
+    defects: dict[int, TrueDefect]
+    """Those that are ever visible, by number."""
+    boxes: list[list[TrueBox]]
+    """Visible defects of every source frame."""
+    vertices: F64
+    faces: I32
+
+    @property
+    def n_frames(self) -> int:
+        """Number of source frames of the clip."""
+        return len(self.centers)
+
+    def frame_at(self, time_s: float) -> int | None:
+        """Source frame shown at a time; None outside the clip."""
+        frame = round(time_s * self.fps)
+        return frame if 0 <= frame < self.n_frames else None
+
+
+def load_truth(folder: Path) -> Truth:
+    """Read `cameras.json`, `defects.json` and `surface.ply` (metres); `BadInput` names what is wrong."""
+    cameras, defects = _json(folder / "cameras.json"), _json(folder / "defects.json")
+    try:
+        mesh = read_mesh(folder / "surface.ply")
+        poses = np.asarray(cameras["cam_to_world"], dtype=np.float64).reshape(-1, 4, 4)
+        camera = cameras["camera"]
+        return Truth(
+            lens=Lens(int(camera["width"]), int(camera["height"]), float(camera["F"]), float(camera["K3"])),
+            roi=tuple(float(value) for value in cameras["roi"]),  # type: ignore[arg-type]  # four by the format
+            fps=float(cameras["fps"]),
+            centers=poses[:, :3, 3] * MM_PER_M,
+            rotations=poses[:, :3, :3],
+            chord=float(np.mean(defects["chord_m"])) * MM_PER_M,
+            defects=_defects(defects["defects"]),
+            boxes=[
+                [TrueBox(int(item["defect"]), np.asarray(item["bbox"], np.float64)) for item in frame]
+                for frame in defects["visible"]
+            ],
+            vertices=mesh.vertices * MM_PER_M,
+            faces=mesh.faces,
+        )
+    except StageFailed as error:
+        raise BadInput(error.message, where="surface.ply") from None
+    except (KeyError, TypeError, ValueError) as error:
+        raise BadInput(f"the truth in {folder.name} is not in the expected form: {error!r}", where="truth") from None
+
+
+def _defects(rows: list[dict[str, Any]]) -> dict[int, TrueDefect]:
+    """Defects with a visible patch; the others can neither be found nor missed."""
+    found = {}
+    for row in rows:
+        patch = np.asarray(row["surface_points"], np.float64).reshape(-1, 3)
+        if len(patch):
+            center = np.asarray(row["surface_center"], np.float64)
+            found[int(row["id"])] = TrueDefect(int(row["id"]), center * MM_PER_M, patch * MM_PER_M)
+    return found
+
+
+def _json(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path.name} cannot be read: {error}", where=path.name) from None

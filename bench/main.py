@@ -1,0 +1,48 @@
+"""`bladeatlas-bench`: how right and how fast a result is."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from core.errors import BladeAtlasError
+
+
+def _accuracy(arguments: argparse.Namespace) -> None:
+    """Score a result folder against ground truth."""
+    # Imported here so that --help does not load the vision libraries.
+    from bench.accuracy.score import score_result
+    from bench.accuracy.table import format_score
+
+    score = score_result(arguments.result, arguments.truth)
+    print(json.dumps(score, indent=1, allow_nan=False) if arguments.json else format_score(score))
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """The command line; every subcommand sets `run`, a function of the parsed arguments."""
+    parser = argparse.ArgumentParser(prog="bladeatlas-bench", description=__doc__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    accuracy = commands.add_parser("accuracy", help="score a result folder against ground truth")
+    accuracy.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+    accuracy.add_argument("truth", type=Path, metavar="TRUTH", help="folder of cameras.json, defects.json, surface.ply")
+    accuracy.add_argument("--json", action="store_true", help="print JSON instead of a table")
+    accuracy.set_defaults(run=_accuracy)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one subcommand; 0 done, 2 bad input, 1 any other expected error."""
+    arguments = make_parser().parse_args(argv)
+    try:
+        arguments.run(arguments)
+    except BladeAtlasError as error:
+        print(f"error: {error.message}", file=sys.stderr)
+        return 2 if error.code == "bad_input" else 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

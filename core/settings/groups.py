@@ -70,6 +70,7 @@ class FeatureSettings(Group):
         1600, "longer side above which frames are scaled down (never up)", unit="px", source="thesis", ge=64
     )
     scale: float = option(1.0, "further scale of the frame before detection", source="draft uses 0.5", gt=0, le=1)
+    subpixel: bool = option(False, "DISK: refine keypoints by a parabola through the heat map", source="measured")
     blade_masks_only: bool = option(False, "drop keypoints outside the annotated blade masks", source="off")
 
 
@@ -160,6 +161,9 @@ class DenseSettings(Group):
     sources: int = option(5, "source images per depth map", source="METHOD: 4-6; thesis 20", ge=1, le=50)
     max_image_size_px: int = option(2000, "longer side of undistorted images", unit="px", source="thesis", ge=64)
     scale: float = option(1.0, "further scale of undistorted images", source="draft uses 0.5", gt=0, le=1)
+    max_stretch: float = option(
+        2.0, "radial stretch of the lens's border by undistortion, at most (2 = 45 degrees)", source="measured", gt=1
+    )
     levels: int = option(3, "image scales, coarse to fine", source="ENGINES 4", ge=1, le=5)
     iterations: int = option(3, "red-black sweeps per scale", source="ENGINES 4", ge=1, le=10)
     best_views: int = option(2, "cost is the mean over this many best source views", source="ENGINES 4", ge=1, le=10)

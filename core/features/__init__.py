@@ -1,0 +1,1 @@
+"""Keypoints and descriptors: DISK (lazy descriptor head) and SIFT."""

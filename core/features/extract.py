@@ -1,0 +1,74 @@
+"""From an exported frame to its features: scale down, detect, return to crop pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import StageFailed
+from core.features.disk import Disk
+from core.features.io import FrameFeatures
+from core.features.sift import sift
+from core.settings.groups import FeatureSettings
+
+Extractor = Callable[[NDArray[np.uint8]], FrameFeatures]
+
+
+def read_image(path: Path) -> NDArray[np.uint8]:
+    """RGB image (height, width, 3); `StageFailed` when it cannot be read."""
+    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    if image is None:
+        raise StageFailed(f"cannot read the frame {path.name}", where="features")
+    return np.ascontiguousarray(image[:, :, ::-1])
+
+
+def working_size(width: int, height: int, settings: FeatureSettings) -> tuple[int, int]:
+    """(width, height) in which features are detected: never larger than the frame, never below 16 px."""
+    scale = min(1.0, settings.max_size_px / max(width, height)) * settings.scale
+    return max(min(width, 16), round(width * scale)), max(min(height, 16), round(height * scale))
+
+
+def make_extractor(settings: FeatureSettings, threads: int = 1) -> Extractor:
+    """The detector that the settings name, for frames of any size; networks are loaded once."""
+    detect = _sift_detector(settings) if settings.method == "sift" else _disk_detector(settings, Disk(threads=threads))
+
+    def extract(image: NDArray[np.uint8]) -> FrameFeatures:
+        height, width = image.shape[:2]
+        size = working_size(width, height, settings)
+        small = image if size == (width, height) else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+        found = detect(small)
+        # Positions already count from the corner of the image, so one factor per axis takes them back exactly.
+        factors = np.array([width / size[0], height / size[1]])
+        keypoints = (found.keypoints * factors).astype(np.float32)
+        return FrameFeatures(keypoints, found.scores, found.descriptors)
+
+    return extract
+
+
+def _disk_detector(settings: FeatureSettings, network: Disk) -> Extractor:
+    def detect(image: NDArray[np.uint8]) -> FrameFeatures:
+        found = network.detect(image, settings.max_keypoints)
+        keypoints = found.pixels + np.float32(0.5)  # whole pixels to COLMAP's convention
+        if settings.subpixel:
+            keypoints = keypoints + found.offsets
+        order = np.argsort(-found.scores, kind="stable")
+        descriptors = found.descriptors[order].astype(np.float16)
+        return FrameFeatures(keypoints[order].astype(np.float32), found.scores[order], descriptors)
+
+    return detect
+
+
+def _sift_detector(settings: FeatureSettings) -> Extractor:
+    def detect(image: NDArray[np.uint8]) -> FrameFeatures:
+        return sift(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), settings.max_keypoints)
+
+    return detect
+
+
+def keep_keypoints(features: FrameFeatures, kept: NDArray[np.bool_]) -> FrameFeatures:
+    """The features where `kept` (n,) is true, in the same order."""
+    return FrameFeatures(features.keypoints[kept], features.scores[kept], features.descriptors[kept])

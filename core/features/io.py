@@ -1,0 +1,46 @@
+"""Features of one frame and their file (docs/stage-results.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import StageFailed
+
+
+@dataclass(frozen=True)
+class FrameFeatures:
+    """Keypoints of one frame, strongest first."""
+
+    keypoints: NDArray[np.float32]
+    """(n, 2) x, y in crop pixels; pixel centres at (0.5, 0.5)."""
+    scores: NDArray[np.float32]
+    """(n,) detector's score, falling."""
+    descriptors: NDArray[Any]
+    """(n, d): float16 of unit length (DISK), uint8 (SIFT)."""
+
+    def __len__(self) -> int:
+        return len(self.keypoints)
+
+
+def feature_name(index: int) -> str:
+    """File name of a frame's features."""
+    return f"{index:04d}.npz"
+
+
+def write_features(path: Path, features: FrameFeatures) -> None:
+    """Write one frame's features; the bytes depend on the arrays alone."""
+    np.savez(path, keypoints=features.keypoints, scores=features.scores, descriptors=features.descriptors)
+
+
+def read_features(path: Path) -> FrameFeatures:
+    """Read what `write_features` wrote; `StageFailed` when the file is missing or damaged."""
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            return FrameFeatures(data["keypoints"], data["scores"], data["descriptors"])
+    except (OSError, KeyError, ValueError) as error:
+        raise StageFailed(f"cannot read the features of a frame: {path.name}: {error}", where="features") from error

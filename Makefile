@@ -1,0 +1,44 @@
+# The one command surface. `make setup` may be run at any time; every other target sets up first.
+SHELL := /bin/bash
+BIN := .venv/bin
+OUT ?= out/demo
+RESULT ?= $(OUT)
+TRUTH ?= samples/truth
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo lint check test bench-speed bench-accuracy lock clean
+
+help: ## list the targets
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
+
+setup: ## put everything into .venv
+	@scripts/setup.sh
+
+demo: setup ## run the whole method on the sample, result in out/demo
+	@$(BIN)/bladeatlas run samples/turbine.mp4 samples/turbine.json --out $(OUT)
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
+
+check: lint ## lint, types, layers and unit tests (minutes)
+	$(BIN)/pytest -m "not sample"
+
+test: lint ## everything, with the runs on the sample
+	$(BIN)/pytest
+
+bench-speed: setup ## time this project's parts beside other programs
+	$(BIN)/bladeatlas-bench speed
+
+bench-accuracy: setup ## score RESULT (default out/demo) against TRUTH (default samples/truth)
+	$(BIN)/bladeatlas-bench accuracy $(RESULT) $(TRUTH)
+
+lock: setup ## write requirements.lock from .venv
+	scripts/lock.sh
+
+clean: ## remove outputs and caches, keep .venv
+	rm -rf out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -1,0 +1,80 @@
+"""What the command line accepts."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from core.settings import PRESET_NAMES
+
+_EXIT_CODES = (
+    "exit codes: 0 done, 1 internal error, 2 bad input or parameters, 3 no reconstruction, 4 partial, 130 interrupted"
+)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The whole command; every subcommand sets `module`, whose `command(parsed)` runs it."""
+    top = argparse.ArgumentParser(
+        prog="bladeatlas",
+        description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
+        epilog=_EXIT_CODES,
+    )
+    top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+    _run(commands)
+    probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
+    probe.add_argument("video", type=Path, metavar="VIDEO")
+    _json(probe)
+    check = _add(commands, "check", "say what was understood of an annotation file")
+    check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
+    check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
+    _json(check)
+    options = _add(commands, "options", "list every option: meaning, unit, default, range, source")
+    _preset(options)
+    _json(options)
+    _json(_add(commands, "version", "print the versions of this program and of the engines it uses"))
+    return top
+
+
+def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    run = _add(commands, "run", "inspect: video and annotations in, result folder out", epilog=_EXIT_CODES)
+    run.add_argument("video", type=Path, metavar="VIDEO")
+    run.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON; see docs/annotations.md")
+    run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
+    _preset(run, default=None)
+    run.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="assignments",
+        metavar="NAME=VALUE",
+        help="set one option (repeatable); `bladeatlas options` lists them",
+    )
+    run.add_argument(
+        "--parameters", type=Path, metavar="FILE", help="JSON {preset, options {name: value}, label, external_id}"
+    )
+    run.add_argument(
+        "--roi", metavar="full|X0,Y0,X1,Y1", help="region of interest, as shares of the source frame's width and height"
+    )
+    run.add_argument("--allow-truncated", action="store_true", help="use the decodable part of a damaged video")
+    run.add_argument("--seed", type=int, metavar="N", help="seed of every random choice (0)")
+    run.add_argument("--workers", type=int, metavar="N", help="processes side by side (number of cores)")
+    run.add_argument("--from", dest="from_stage", metavar="STAGE", help="compute this stage and what follows again")
+    run.add_argument("--force", action="store_true", help="replace another input's result in DIR")
+    _json(run, "print progress and result as JSON lines")
+
+
+def _add(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, epilog: str | None = None
+) -> argparse.ArgumentParser:
+    command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=epilog)
+    command.set_defaults(module=f"cli.{name}")
+    return command
+
+
+def _preset(command: argparse.ArgumentParser, default: str | None = "default") -> None:
+    command.add_argument("--preset", default=default, metavar="|".join(PRESET_NAMES), help="where the values start")
+
+
+def _json(command: argparse.ArgumentParser, text: str = "print JSON") -> None:
+    command.add_argument("--json", action="store_true", help=text)

@@ -1,0 +1,36 @@
+"""`bladeatlas probe`: what a video is."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from itertools import pairwise
+
+from cli.progress import duration
+from core.video.probe import probe_video
+from core.video.table import FrameTable
+
+
+def command(parsed: argparse.Namespace) -> int:
+    """Decode the whole video once and say what it holds; a damaged video is described, not refused."""
+    table = probe_video(parsed.video, allow_truncated=True)
+    if parsed.json:
+        print(json.dumps({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1, allow_nan=False))
+        return 0
+    info, gaps = table.info, _gaps(table)
+    print(f"{parsed.video.name}: {info.width}x{info.height}, {info.codec}, {info.n_frames} frames")
+    print(f"  duration {duration(info.duration_s)}, {float(info.average_rate):.4g} frames/s on average")
+    steps = f"{gaps['min_step_s']:.4f} to {gaps['max_step_s']:.4f} s"
+    print(f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate")
+    if info.rotation_deg:
+        print(f"  rotated by {info.rotation_deg} degrees; size and boxes are of the frame as shown")
+    if info.truncated:
+        print(f"  damaged: {', '.join(info.damage)} (a run needs --allow-truncated)")
+    return 0
+
+
+def _gaps(table: FrameTable) -> dict[str, float | bool]:
+    times = [row.time_s for row in table.rows]
+    steps = [later - earlier for earlier, later in pairwise(times)]
+    shortest, longest = min(steps), max(steps)
+    return {"min_step_s": shortest, "max_step_s": longest, "variable_rate": longest > 1.5 * shortest}

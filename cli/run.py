@@ -1,0 +1,70 @@
+"""`bladeatlas run`: check the input, run the plan, say what came out."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import Any
+
+from cli import exits, parameters, progress, report
+from cli.preflight import check_input
+from core.errors import BadInput
+from core.graph import STAGES
+from worker.outcome import Outcome
+from worker.run import run_inspection
+
+
+def command(parsed: argparse.Namespace) -> int:
+    """Run or continue an inspection; returns the exit code of the contract."""
+    wanted = parameters.from_arguments(parsed)
+    settings = wanted.settings()
+    if parsed.workers is not None and parsed.workers < 1:
+        raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
+    if parsed.from_stage is not None and parsed.from_stage not in STAGES:
+        raise BadInput(f"unknown stage '{parsed.from_stage}'; known: {', '.join(STAGES)}", where="--from")
+    check_input(parsed.video, parsed.annotations, settings)
+    display = progress.choose(parsed.json)
+    with display:
+        outcome = run_inspection(
+            parsed.video,
+            parsed.annotations,
+            parsed.out,
+            settings,
+            workers=parsed.workers,
+            on_event=display.show,
+            from_stage=parsed.from_stage,
+            force=parsed.force,
+        )
+    code = _code(outcome)
+    if isinstance(display, progress.JsonDisplay):
+        display.line({"event": "result", "exit_code": code, **_record(outcome)})
+    elif outcome.state in ("succeeded", "partial", "failed"):
+        print(report.text(outcome))
+    if code == exits.INTERRUPTED:
+        print("bladeatlas: interrupted; the same command goes on where it stopped", file=sys.stderr)
+    elif outcome.error is not None:
+        print(f"bladeatlas: {exits.one_line(outcome.error)}", file=sys.stderr)
+    return code
+
+
+def _code(outcome: Outcome) -> int:
+    if outcome.state == "succeeded":
+        return exits.DONE
+    if outcome.state == "partial":
+        return exits.PARTIAL
+    if outcome.state in ("interrupted", "cancelled"):
+        return exits.INTERRUPTED
+    return exits.exit_code(outcome.error) if outcome.error else exits.INTERNAL
+
+
+def _record(outcome: Outcome) -> dict[str, Any]:
+    return {
+        "state": outcome.state,
+        "failed_stage": outcome.failed_stage,
+        "reason": outcome.error.code if outcome.error else "",
+        "message": outcome.error.message if outcome.error else "",
+        "seconds": outcome.seconds,
+        "computed": outcome.computed,
+        "reused": outcome.reused,
+        "out": str(outcome.out),
+    }

@@ -1,0 +1,19 @@
+"""`bladeatlas version`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from core.versions import all_versions
+
+
+def command(parsed: argparse.Namespace) -> int:
+    """Print the versions of the program and its engines."""
+    versions = all_versions()
+    if parsed.json:
+        print(json.dumps({"schema_version": 1, "versions": versions}, indent=1))
+    else:
+        for name, number in versions.items():
+            print(f"{name} {number}")
+    return 0

@@ -63,7 +63,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("mesh", "mesh", weight=3),
         _spec("map_defects", "mapping", weight=1),
         _spec("timeline", "timeline", weight=0.2),
-        _spec("gallery", weight=1),
+        _spec("gallery", "gallery", reads_video=True, weight=1),
     )
 }
 

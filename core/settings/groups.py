@@ -27,6 +27,9 @@ class FrameSettings(Group):
     max_count: int = option(
         600, "sampled and annotated frames of the search together, at most", unit="frames", source="time budget", ge=2
     )
+    time_rule: Literal["pts", "average_rate"] = option(
+        "pts", "frame of a clip time: nearest presentation time, or time x average rate", source="METHOD; exact times"
+    )
     jpeg_quality: int = option(95, "quality of the exported frames", unit="%", source="OpenCV default", ge=50, le=100)
 
 
@@ -219,6 +222,18 @@ class TimelineSettings(Group):
     """Events and clusters."""
 
     radius_fraction: float = option(0.02, "cluster radius / mesh diagonal (eq. 3.3)", source="thesis", gt=0, le=1)
+    occlusion_fraction: float = option(
+        0.01, "surface this much before a place / mesh diagonal does not hide it", source="colouring radius", ge=0, le=1
+    )
+
+
+class GallerySettings(Group):
+    """Pictures for people."""
+
+    max_frames: int = option(200, "frames with boxes, at most", unit="frames", source="size of the page", ge=1)
+    jpeg_quality: int = option(88, "quality of the pictures", unit="%", source="size of the page", ge=50, le=100)
+    render_width_px: int = option(1600, "width of the two views of the surface", unit="px", source="page", ge=64)
+    render_height_px: int = option(1200, "height of the two views of the surface", unit="px", source="page", ge=64)
 
 
 class ComputeSettings(Group):

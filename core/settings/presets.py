@@ -37,6 +37,7 @@ class Settings(Group):
     mesh: groups.MeshSettings = groups.MeshSettings()
     mapping: groups.MappingSettings = groups.MappingSettings()
     timeline: groups.TimelineSettings = groups.TimelineSettings()
+    gallery: groups.GallerySettings = groups.GallerySettings()
     compute: groups.ComputeSettings = groups.ComputeSettings()
     overrides: tuple[str, ...] = option((), "names that the user set, sorted", source="the run")
 
@@ -47,6 +48,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "frames.clip_start_s": 2.0,
         "frames.clip_end_s": 121.0,
         "frames.include_annotated": False,
+        "frames.time_rule": "average_rate",
         "camera.focal": "colmap",
         "camera.principal_point": "crop",
         "matching.method": "lightglue",

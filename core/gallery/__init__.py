@@ -1,0 +1,1 @@
+"""The two views for people: boxes on frames, and the coloured surface."""

@@ -1,0 +1,1 @@
+"""Detections of the image plane placed on the surface."""

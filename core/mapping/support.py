@@ -1,0 +1,102 @@
+"""Boxes in pixels of the exported frames, and the sparse 3D points seen inside them (thesis 3.3.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import cv2  # noqa: F401  # must be loaded before pycolmap: the other order aborts in PNG writing
+import numpy as np
+import pycolmap
+from numpy.typing import NDArray
+
+from core.errors import StageFailed
+from core.roi import Crop
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+Box = tuple[float, float, float, float]
+
+
+def box_in_crop_px(box: Box, crop: Crop, box_frame: Literal["source", "crop"]) -> Box:
+    """A normalised box in pixels of the exported frame (pixel centres at 0.5); it may reach beyond the frame.
+
+    `source` undoes the normalisation on the source frame and shifts by the crop offset. `crop` scales the
+    numbers to the cropped image instead, as the thesis appears to do, which misplaces every box.
+    """
+    x1, y1, x2, y2 = box
+    if box_frame == "crop":
+        return (x1 * crop.width, y1 * crop.height, x2 * crop.width, y2 * crop.height)
+    width, height = crop.source_width, crop.source_height
+    return (x1 * width - crop.x0, y1 * height - crop.y0, x2 * width - crop.x0, y2 * height - crop.y0)
+
+
+def overlaps_crop(box_px: Box, crop: Crop) -> bool:
+    """Whether any part of a box in crop pixels lies on the exported frame."""
+    x1, y1, x2, y2 = box_px
+    return x1 < crop.width and y1 < crop.height and x2 > 0 and y2 > 0
+
+
+@dataclass(frozen=True)
+class Observations:
+    """Keypoints of one registered image that carry a 3D point."""
+
+    xy: F64
+    """(n, 2) crop pixels."""
+    point_ids: I64
+    """(n,)"""
+
+    def inside(self, box_px: Box) -> I64:
+        """Sorted unique ids of the 3D points whose keypoints lie inside the box, its border included."""
+        x1, y1, x2, y2 = box_px
+        x, y = self.xy[:, 0], self.xy[:, 1]
+        return np.unique(self.point_ids[(x >= x1) & (x <= x2) & (y >= y1) & (y <= y2)])
+
+
+@dataclass(frozen=True)
+class SparseModel:
+    """What mapping needs of a sparse model: observations by frame index, positions by point id."""
+
+    observations: Mapping[int, Observations]
+    positions: Mapping[int, F64]
+    """(3,) world coordinates."""
+
+    def points(self, ids: Iterable[int]) -> F64:
+        """(n, 3) positions of point ids, in their order."""
+        return np.array([self.positions[int(i)] for i in ids], dtype=np.float64).reshape(-1, 3)
+
+
+def read_sparse_model(folder: Path, frame_indices: Iterable[int] | None = None) -> SparseModel:
+    """Read the observations of the registered images (all, or those with the given frame indices).
+
+    Image id = frame index + 1, as every stage here writes it.
+
+    Raises:
+        StageFailed: the folder holds no COLMAP model.
+    """
+    model = open_model(folder)
+    wanted = None if frame_indices is None else {int(i) for i in frame_indices}
+    observations: dict[int, Observations] = {}
+    for image_id in sorted(model.reg_image_ids()):
+        if wanted is None or image_id - 1 in wanted:
+            observations[image_id - 1] = _observations(model.image(image_id))
+    needed = {int(i) for seen in observations.values() for i in seen.point_ids}
+    positions = {i: np.asarray(model.point3D(i).xyz, dtype=np.float64) for i in sorted(needed)}
+    return SparseModel(observations, positions)
+
+
+def open_model(folder: Path) -> Any:
+    """The COLMAP model of a folder as a pycolmap.Reconstruction; `StageFailed` when there is none."""
+    try:
+        return pycolmap.Reconstruction(str(folder))
+    except (ValueError, RuntimeError, OSError) as error:
+        raise StageFailed(f"no sparse model in {folder.name}: {error}", where=folder.name) from None
+
+
+def _observations(image: Any) -> Observations:
+    points = image.get_observation_points2D()
+    xy = np.array([point.xy for point in points], dtype=np.float64).reshape(-1, 2)
+    ids = np.array([point.point3D_id for point in points], dtype=np.int64)
+    return Observations(xy, ids)

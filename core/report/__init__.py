@@ -1,0 +1,1 @@
+"""What a run says about itself: tables, quality and summary, from plain records."""

@@ -1,0 +1,75 @@
+"""One call from a run's record to everything the report consists of, and one that writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core.mapping.rows import DETECTION_COLUMNS
+from core.report.quality import Verdict, build_quality, collect_flags, verdict_of
+from core.report.record import RunRecord
+from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
+from core.report.summary import build_summary
+from core.report.tables import write_csv, write_json
+from core.timeline.events import TIMELINE_COLUMNS
+
+Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Report:
+    """Published tables and objects of a run, as plain JSON values."""
+
+    verdict: Verdict
+    summary: Mapping[str, Any]
+    quality: Mapping[str, Any]
+    frames: Sequence[Row]
+    cases: Sequence[Row]
+    detections: Sequence[Row]
+    timeline: Sequence[Row]
+    defects: Sequence[Row]
+
+
+def build_report(record: RunRecord) -> Report:
+    """The report of a run that ended in whatever way. Pure: same record, same report.
+
+    A refused run has no mapped row, no event and no defect, whatever its stages left behind.
+    """
+    flags = collect_flags(record)
+    verdict = verdict_of(record, flags)
+    refused = verdict == "refused"
+    cases = case_rows(record)
+    detections = detection_rows(record, refused)
+    timeline = [] if refused else list(record.tables.timeline)
+    defects = [] if refused else list(record.tables.defects)
+    return Report(
+        verdict=verdict,
+        summary=build_summary(record, verdict, detections, timeline, defects),
+        quality=build_quality(record, verdict, flags, cases, detections),
+        frames=frame_rows(record),
+        cases=cases,
+        detections=detections,
+        timeline=timeline,
+        defects=defects,
+    )
+
+
+def write_tables(report: Report, out_dir: Path) -> list[str]:
+    """Write all tables of the report below `out_dir`; gives their relative paths. Empty tables are written too."""
+    columns = {
+        "cases": (CASE_COLUMNS, report.cases),
+        "mapping/detections": (DETECTION_COLUMNS, report.detections),
+        "mapping/timeline": (TIMELINE_COLUMNS, report.timeline),
+    }
+    write_json(out_dir / "summary.json", report.summary)
+    write_json(out_dir / "quality.json", report.quality)
+    write_csv(out_dir / "frames.csv", FRAME_COLUMNS, report.frames)
+    written = ["summary.json", "quality.json", "frames.csv"]
+    for name, (names, rows) in columns.items():
+        write_csv(out_dir / f"{name}.csv", names, rows)
+        write_json(out_dir / f"{name}.json", list(rows))
+        written += [f"{name}.csv", f"{name}.json"]
+    write_json(out_dir / "mapping" / "defects.json", list(report.defects))
+    return [*written, "mapping/defects.json"]

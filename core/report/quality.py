@@ -1,0 +1,144 @@
+"""quality.json: can this result be trusted, what was lost, and the thesis's tables for the run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from core.flags import Flag
+from core.report.funnel import funnel, losses, support_counts
+from core.report.record import RunRecord
+from core.report.search import refinement_gain, spread, weak_cases
+from core.report.tables import SCHEMA_VERSION
+from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
+
+Row = Mapping[str, Any]
+Verdict = Literal["ok", "suspect", "refused"]
+
+_SEVERITY_RANK = {"error": 0, "warning": 1, "info": 2}
+
+
+def collect_flags(record: RunRecord) -> list[Flag]:
+    """All flags that stages raised (facts `flags` and `checks`) and those of the settings, worst first, none twice."""
+    flags = _settings_flags(record)
+    for task in record.tasks:
+        for row in [*task.facts.get("flags", ()), *task.facts.get("checks", ())]:
+            flags.append(Flag.from_dict(row))
+    unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
+    return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
+
+
+def _settings_flags(record: RunRecord) -> list[Flag]:
+    """The two coordinate mistakes that the preset `thesis` keeps."""
+    flags = []
+    if record.settings.mapping.box_frame == "crop":
+        flags.append(Flag("boxes_in_crop_frame", "warning", where="mapping.box_frame"))
+    if record.settings.camera.principal_point == "crop":
+        flags.append(Flag("principal_point_at_crop_centre", "warning", where="camera.principal_point"))
+    return flags
+
+
+def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
+    """`refused` without a model to trust, `suspect` with any warning or error, else `ok`."""
+    if record.reason == "no_reconstruction" or not record.facts("extend"):
+        return "refused"
+    return "suspect" if any(flag.severity != "info" for flag in flags) else "ok"
+
+
+def build_quality(
+    record: RunRecord, verdict: Verdict, flags: Sequence[Flag], cases: Sequence[Row], detections: Sequence[Row]
+) -> dict[str, Any]:
+    """The object of quality.json. Unknown = null; nothing is guessed."""
+    defects = [] if verdict == "refused" else record.tables.defects
+    steps = funnel(detections, len(defects), record.settings.mapping.method)
+    support = support_counts(detections, record.facts("map_defects").get("unique_support_points"))
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "verdict": verdict,
+        "state": record.state,
+        "reason": record.reason or None,
+        "flags": [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags],
+        "notes": _notes(record),
+        "funnel": steps,
+        "lost": losses(detections),
+        "support": support,
+        "registration": _registration(record),
+        "reprojection_error": _reprojection(record),
+        "surface": _surface(record),
+        "search": {
+            "coarse": spread(cases, "coarse"),
+            "refined": spread(cases, "refine"),
+            "gain": refinement_gain(cases),
+            "weak": weak_cases(cases),
+            "losers": _losers(cases),
+        },
+        "tables": {
+            "3.2": table_3_2(record),
+            "3.3": table_3_3(record, cases),
+            "3.4": table_3_4(record, detections, steps, support),
+            "3.5": table_3_5(record, cases),
+        },
+    }
+
+
+def _notes(record: RunRecord) -> list[str]:
+    notes = []
+    if record.settings.mapping.box_frame == "crop":
+        notes.append(
+            "Boxes are normalised on the source frame but were scaled to the cropped image, as the thesis appears to "
+            "do; most places are wrong by it. The default preset transforms them exactly."
+        )
+    if record.settings.camera.principal_point == "crop":
+        notes.append(
+            "The principal point started at the centre of the off-centre crop, as the thesis appears to do. The "
+            "default preset starts from the source frame's centre minus the crop offset."
+        )
+    if record.settings.overrides:
+        notes.append(f"Preset {record.settings.preset} with overrides: {', '.join(record.settings.overrides)}.")
+    return notes
+
+
+def _registration(record: RunRecord) -> dict[str, Any]:
+    """Registered shares, of the frames offered and of all frames of the video."""
+    offered, registered = len(record.tables.frames), len(record.tables.registered)
+    frames, registered_set = record.tables.frames, set(record.tables.registered)
+    annotated = {row["source_index"] for row in record.tables.detections if row.get("source_index") is not None}
+    seen = {frame["source_index"] for frame in frames if frame["index"] in registered_set}
+    in_video = record.facts("probe").get("n_frames")
+    return {
+        "frames_in_video": in_video,
+        "frames": offered,
+        "registered": registered,
+        "share_of_frames": _share(registered, offered),
+        "share_of_video": _share(registered, in_video),
+        "annotated_frames": len(annotated),
+        "annotated_registered": len(annotated & seen),
+        "share_of_annotated": _share(len(annotated & seen), len(annotated)),
+    }
+
+
+def _share(part: int, whole: int | None) -> float | None:
+    return round(part / whole, 4) if whole else None
+
+
+def _reprojection(record: RunRecord) -> dict[str, Any]:
+    facts = record.facts("extend")
+    return {
+        "mean_px": facts.get("mean_reprojection_error_px"),
+        "median_px": facts.get("median_reprojection_error_px"),
+    }
+
+
+def _surface(record: RunRecord) -> dict[str, Any]:
+    names = ("n_vertices", "n_faces", "diagonal_su", "point_spacing_su", "supported_share")
+    facts = record.facts("mesh")
+    return {name: facts.get(name) for name in names}
+
+
+def _losers(cases: Sequence[Row]) -> list[dict[str, Any]]:
+    """The cases that were not selected, best first."""
+    order = sorted(
+        (row for row in cases if not row["selected"]),
+        key=lambda row: (-int(row["registered_images"] or 0), -int(row["points3D"] or 0), row["name"]),
+    )
+    return [{name: row[name] for name in ("name", "status", "registered_images", "points3D")} for row in order]

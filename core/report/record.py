@@ -1,0 +1,81 @@
+"""What the report is made from: everything the plan knows about a run, as plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from core.settings import Settings
+from core.stage import Facts
+
+RunState = Literal["succeeded", "partial", "failed", "cancelled", "interrupted"]
+TaskState = Literal["succeeded", "failed", "skipped", "cancelled", "waiting"]
+
+
+@dataclass(frozen=True)
+class TaskRecord:
+    """One task of the plan, ended or not."""
+
+    key: str
+    """Name in the plan, e.g. ``coarse/seg_000_0000_0180``."""
+    state: TaskState
+    reason: str = ""
+    """Code of the error that ended it; empty when it succeeded."""
+    message: str = ""
+    """The error in one sentence; empty when it succeeded."""
+    seconds: float = 0.0
+    peak_rss_bytes: int = 0
+    facts: Facts = field(default_factory=dict)
+
+    @property
+    def stage(self) -> str:
+        """Name of its stage."""
+        return self.key.split("/", 1)[0]
+
+
+@dataclass(frozen=True)
+class RunTables:
+    """Tables that stages left in their result folders; empty where a stage did not come to its end."""
+
+    detections: Sequence[Mapping[str, Any]] = ()
+    """`annotations`: detections as read."""
+    frames: Sequence[Mapping[str, Any]] = ()
+    """`frames`: frame table of the search."""
+    registered: Sequence[int] = ()
+    """`extend`: indices of the registered frames."""
+    mapped_rows: Sequence[Mapping[str, Any]] | None = None
+    """`timeline` (else `map_defects`): rows of the detections; None = mapping was not reached."""
+    timeline: Sequence[Mapping[str, Any]] = ()
+    defects: Sequence[Mapping[str, Any]] = ()
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """A run, ended in whatever way."""
+
+    settings: Settings
+    state: RunState
+    tasks: Sequence[TaskRecord]
+    """Every task of the plan, in its order."""
+    tables: RunTables = field(default_factory=RunTables)
+    inputs: Mapping[str, str] = field(default_factory=dict)
+    """SHA-256 (hex) of the input files by role: ``video``, ``annotations``."""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    """Versions of this program and of the libraries that shape results."""
+    failed_stage: str = ""
+    reason: str = ""
+    """Code that says why the state is not ``succeeded``."""
+    message: str = ""
+    """The same in one sentence."""
+
+    def facts(self, key: str) -> Facts:
+        """Facts of a finished task; empty when it did not succeed or is not in the plan."""
+        for task in self.tasks:
+            if task.key == key and task.state == "succeeded":
+                return task.facts
+        return {}
+
+    def of_stage(self, *stages: str) -> list[TaskRecord]:
+        """Tasks of the stages, in the plan's order."""
+        return [task for task in self.tasks if task.stage in stages]

@@ -1,0 +1,101 @@
+"""summary.json: what ran, with what, and the headline numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from core.fingerprint import digest_of
+from core.graph import STAGES
+from core.report.record import RunRecord, TaskRecord
+from core.report.rows import selected_case
+from core.report.tables import SCHEMA_VERSION
+
+Row = Mapping[str, Any]
+
+
+def build_summary(
+    record: RunRecord, verdict: str, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
+) -> dict[str, Any]:
+    """The object of summary.json."""
+    parameters = record.settings.model_dump(mode="json")
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "state": record.state,
+        "failed_stage": record.failed_stage or None,
+        "reason": record.reason or None,
+        "message": record.message or None,
+        "verdict": verdict,
+        "preset": record.settings.preset,
+        "parameters": parameters,
+        "inputs": dict(record.inputs),
+        "fingerprint": run_fingerprint(record),
+        "versions": dict(record.versions),
+        "scale": {"unit": "model", "value": None, "sigma": None},
+        "stages": _stages(record.tasks),
+        "headline": _headline(record, detections, timeline, defects),
+    }
+
+
+def run_fingerprint(record: RunRecord) -> str:
+    """Names the result: inputs, settings without the pure work options, and the version of every stage."""
+    return digest_of(
+        {
+            "inputs": dict(record.inputs),
+            "settings": record.settings.model_dump(mode="json", exclude={"compute", "overrides"}),
+            "stages": {name: spec.version for name, spec in STAGES.items()},
+        }
+    )
+
+
+def _stages(tasks: Sequence[TaskRecord]) -> list[dict[str, Any]]:
+    """One entry per stage of the graph: tasks, summed seconds, largest memory of one task."""
+    rows = []
+    for name in STAGES:
+        own = [task for task in tasks if task.stage == name]
+        rows.append(
+            {
+                "name": name,
+                "state": stage_state([task.state for task in own]),
+                "tasks": len(own),
+                "seconds": round(sum(task.seconds for task in own), 3),
+                "peak_rss_bytes": max((task.peak_rss_bytes for task in own), default=0),
+                "reasons": sorted({task.reason for task in own if task.reason}),
+            }
+        )
+    return rows
+
+
+def stage_state(states: Sequence[str]) -> str:
+    """State of a stage from those of its tasks.
+
+    A stage that fans out succeeds with any succeeded task once all have ended; without tasks it is waiting.
+    """
+    if not states or "waiting" in states:
+        return "waiting"
+    if "cancelled" in states:
+        return "cancelled"
+    if "succeeded" in states:
+        return "succeeded"
+    return "failed" if "failed" in states else "skipped"
+
+
+def _headline(
+    record: RunRecord, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
+) -> dict[str, Any]:
+    sparse, fused, mesh = record.facts("extend"), record.facts("fuse"), record.facts("mesh")
+    return {
+        "frames": len(record.tables.frames),
+        "selected_case": selected_case(record) or None,
+        "registered_images": len(record.tables.registered),
+        "points3D": sparse.get("points3D"),
+        "mean_reprojection_error_px": sparse.get("mean_reprojection_error_px"),
+        "median_reprojection_error_px": sparse.get("median_reprojection_error_px"),
+        "fused_points": fused.get("n_points"),
+        "mesh_vertices": mesh.get("n_vertices"),
+        "mesh_faces": mesh.get("n_faces"),
+        "detections": len(detections),
+        "mapped": sum(row["outcome"] == "mapped" for row in detections),
+        "events": len(timeline),
+        "defects": len(defects),
+    }

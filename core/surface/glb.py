@@ -1,0 +1,135 @@
+"""Coloured meshes as binary glTF 2.0, with support and defect numbers as vertex attributes."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.surface.ply import Mesh
+
+GLTF_FROM_WORLD = np.diag([1.0, -1.0, -1.0])
+"""glTF is y-up and looks along -z; COLMAP's camera frames, and so its worlds, are y-down and look along +z."""
+
+_FLOAT, _USHORT, _UINT = 5126, 5123, 5125
+_ARRAY, _INDICES = 34962, 34963
+_JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
+
+
+def write_glb(path: Path, mesh: Mesh, unit: str = "model") -> None:
+    """Write a mesh as GLB: y-up positions, normals, COLOR_0, `_SUPPORT` and `_DEFECT_ID` where the mesh has them.
+
+    Vertex colours are sRGB in the mesh and linear in glTF; they are stored with 16 bits so that dark tones
+    keep their steps. Numbers of defects are floats, because glTF knows no 32-bit integer attribute.
+    """
+    buffer = _Buffer()
+    attributes: dict[str, int] = {}
+    positions = (mesh.vertices @ GLTF_FROM_WORLD.T).astype("<f4")
+    attributes["POSITION"] = buffer.add(positions, _FLOAT, "VEC3", _ARRAY, bounds=True)
+    normals = vertex_normals(mesh) if mesh.normals is None else mesh.normals
+    attributes["NORMAL"] = buffer.add((_unit_rows(normals) @ GLTF_FROM_WORLD.T).astype("<f4"), _FLOAT, "VEC3", _ARRAY)
+    if mesh.colors is not None:
+        attributes["COLOR_0"] = buffer.add(_linear_rgba(mesh.colors), _USHORT, "VEC4", _ARRAY, normalized=True)
+    for name in ("support", "defect_id"):
+        if name in mesh.extra:
+            values = mesh.extra[name].astype("<f4")
+            attributes[f"_{name.upper()}"] = buffer.add(values, _FLOAT, "SCALAR", _ARRAY)
+    indices = buffer.add(mesh.faces.astype("<u4").ravel(), _UINT, "SCALAR", _INDICES)
+    document = _document(buffer, attributes, indices, unit)
+    _write(path, document, bytes(buffer.data))
+
+
+def vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
+    """(n, 3) area-weighted unit normals of the vertices; (0, 0, 1) where no face gives one."""
+    corners = mesh.vertices[mesh.faces]
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    total = np.zeros_like(mesh.vertices, dtype=np.float64)
+    for axis in range(3):
+        total[:, axis] = np.bincount(mesh.faces.ravel(), np.repeat(face[:, axis], 3), minlength=len(total))
+    return _unit_rows(total)
+
+
+def _unit_rows(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.where(length > 0, vectors / np.where(length > 0, length, 1.0), (0.0, 0.0, 1.0))
+
+
+def _linear_rgba(colors: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    """(n, 4) linear colours in 16 bits from sRGB bytes (IEC 61966-2-1), opaque."""
+    level = np.arange(256) / 255.0
+    linear = np.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4)
+    table = np.rint(linear * 65535).astype("<u2")
+    rgba = np.full((len(colors), 4), 65535, dtype="<u2")
+    rgba[:, :3] = table[colors]
+    return rgba
+
+
+class _Buffer:
+    """The binary chunk and the accessors into it."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def add(
+        self,
+        values: NDArray[Any],
+        component: int,
+        kind: str,
+        target: int,
+        *,
+        normalized: bool = False,
+        bounds: bool = False,
+    ) -> int:
+        """Append an array and give the index of its accessor."""
+        raw = np.ascontiguousarray(values).tobytes()
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw), "target": target})
+        self.data += raw + b"\0" * (-len(raw) % 4)
+        accessor: dict[str, Any] = {
+            "bufferView": len(self.views) - 1,
+            "componentType": component,
+            "count": len(values),
+            "type": kind,
+        }
+        if normalized:
+            accessor["normalized"] = True
+        if bounds and len(values):
+            accessor["min"] = [float(value) for value in values.min(axis=0)]
+            accessor["max"] = [float(value) for value in values.max(axis=0)]
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1
+
+
+def _document(buffer: _Buffer, attributes: dict[str, int], indices: int, unit: str) -> dict[str, Any]:
+    return {
+        "asset": {
+            "version": "2.0",
+            "generator": "BladeAtlas",
+            "extras": {"unit": unit, "gltf_from_world": GLTF_FROM_WORLD.tolist()},
+        },
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": "surface with defects"}],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": indices, "material": 0, "mode": 4}]}],
+        "materials": [
+            {"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.85}},
+        ],
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{"byteLength": len(buffer.data)}],
+    }
+
+
+def _write(path: Path, document: dict[str, Any], binary: bytes) -> None:
+    text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
+    text += b" " * (-len(text) % 4)
+    total = 12 + 8 + len(text) + 8 + len(binary)
+    with path.open("wb") as stream:
+        stream.write(struct.pack("<4sII", b"glTF", 2, total))
+        stream.write(struct.pack("<II", len(text), _JSON_CHUNK) + text)
+        stream.write(struct.pack("<II", len(binary), _BINARY_CHUNK) + binary)

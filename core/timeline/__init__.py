@@ -1,0 +1,1 @@
+"""Placed detections grouped into defects and events."""

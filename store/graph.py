@@ -1,0 +1,46 @@
+"""The stage graph as the plan sees it: `core.graph`, or another one in tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from core.fingerprint import task_fingerprint
+from core.graph import STAGES, StageSpec, TaskSpec, expand, stage_settings
+from core.settings import Settings
+from core.stage import Facts
+
+NO_RESULT = "none"
+"""Stands in a fingerprint for a dependency without a result."""
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Stages and how a run unfolds into tasks."""
+
+    stages: Mapping[str, StageSpec]
+    expand: Callable[[Settings, Mapping[str, Facts]], Sequence[TaskSpec]]
+    serves_from: tuple[str, ...] = ()
+    """Once one of these stages has succeeded a later failure leaves something worth serving (`partial`)."""
+
+    def fingerprint(
+        self,
+        task: TaskSpec,
+        settings: Settings,
+        digests: Mapping[str, str],
+        video_sha256: str,
+        annotations_sha256: str | None,
+    ) -> str:
+        """Name of the result of `task`; `digests` holds those of its dependencies that have a result."""
+        spec = self.stages[task.stage]
+        inputs = {key: digests.get(key, NO_RESULT) for key in task.depends}
+        if spec.reads_video:
+            inputs["input:video"] = video_sha256
+        if spec.reads_annotations:
+            inputs["input:annotations"] = annotations_sha256 or NO_RESULT
+        chosen = stage_settings(settings, spec)
+        return task_fingerprint(task.stage, spec.version, chosen, dict(task.args), inputs)
+
+
+CORE_GRAPH = Graph(STAGES, expand, serves_from=("reduce_coarse",))
+"""What every inspection runs. A reducer that succeeded has named a case with a model."""

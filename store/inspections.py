@@ -1,0 +1,179 @@
+"""Inspections as a whole: create, reopen, forget, look at, clean up. Leases are `store.plan`'s."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from sqlalchemy import delete, select
+
+from core.errors import BadInput
+from core.fingerprint import digest_of
+from core.settings import Settings
+from store.advance import advance
+from store.db import Database
+from store.graph import CORE_GRAPH, Graph
+from store.leasing import input_files, lock_inspection, put_result
+from store.models import Inspection, Task
+from store.models import Result as ResultRow
+from store.records import InputFiles, InspectionView, Result, TaskView
+from store.rows import clear_rows
+
+
+def input_digest(files: InputFiles) -> str:
+    """Name of an input by its content."""
+    return digest_of({"video": files.video_sha256, "annotations": files.annotations_sha256})
+
+
+@dataclass(frozen=True)
+class Inspections:
+    """Everything about inspections but their leases."""
+
+    db: Database
+    graph: Graph = CORE_GRAPH
+
+    def create(self, inspection_id: str, files: InputFiles, settings: Settings, out: str) -> None:
+        """A new inspection with the first tasks of its plan."""
+        with self.db.write() as session:
+            now = self.db.now(session)
+            inspection = Inspection(
+                id=inspection_id,
+                state="queued",
+                video_path=files.video,
+                video_sha256=files.video_sha256,
+                annotations_path=files.annotations,
+                annotations_sha256=files.annotations_sha256,
+                input_digest=input_digest(files),
+                settings=settings.model_dump(mode="json"),
+                out=out,
+                previous=[],
+                created_at=now,
+                updated_at=now,
+            )
+            session.add(inspection)
+            session.flush()
+            advance(session, self.graph, inspection, now)
+
+    def reopen(self, inspection_id: str, files: InputFiles, settings: Settings) -> None:
+        """Plan an inspection anew, with other parameters, another input, or the same after a stop.
+
+        The plan is rebuilt from nothing; finished fingerprints are taken up again, so only what changed is
+        left to do, and failed tasks get a new chance. Old leases end: their results will be refused.
+
+        Raises:
+            BadInput: a task is leased (cancel first, or take over leases of owners that are gone).
+        """
+        chosen = settings.model_dump(mode="json")
+        with self.db.write() as session:
+            inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
+            tasks = session.scalars(select(Task).where(Task.inspection_id == inspection_id)).all()
+            if any(task.state == "leased" for task in tasks):
+                raise BadInput("the inspection is still being worked on", code="conflict", where=inspection_id)
+            if chosen != inspection.settings or input_digest(files) != inspection.input_digest:
+                inspection.previous = sorted({task.fingerprint for task in tasks if task.fingerprint})
+            session.execute(delete(Task).where(Task.inspection_id == inspection_id))
+            clear_rows(session, inspection_id)
+            session.expunge_all()
+            inspection = lock_inspection(session, inspection_id)
+            inspection.video_path, inspection.video_sha256 = files.video, files.video_sha256
+            inspection.annotations_path, inspection.annotations_sha256 = files.annotations, files.annotations_sha256
+            inspection.input_digest, inspection.settings = input_digest(files), chosen
+            inspection.state, inspection.error, inspection.failed_stage = "queued", None, None
+            inspection.started_at, inspection.ended_at = None, None
+            advance(session, self.graph, inspection, now)
+
+    def find(self) -> list[InspectionView]:
+        """All inspections, oldest first."""
+        with self.db.read() as session:
+            rows = session.scalars(select(Inspection).order_by(Inspection.created_at, Inspection.id))
+            return [_view(row) for row in rows]
+
+    def get(self, inspection_id: str) -> InspectionView:
+        """One inspection; `BadInput` when there is none."""
+        with self.db.read() as session:
+            row = session.get(Inspection, inspection_id)
+            if row is None:
+                raise BadInput(f"there is no inspection '{inspection_id}'", where="inspection")
+            return _view(row)
+
+    def tasks(self, inspection_id: str) -> list[TaskView]:
+        """The plan as it stands, in its order."""
+        with self.db.read() as session:
+            query = (
+                select(Task, ResultRow.path)
+                .outerjoin(ResultRow, ResultRow.fingerprint == Task.fingerprint)
+                .where(Task.inspection_id == inspection_id)
+                .order_by(Task.position, Task.id)
+            )
+            return [_task_view(task, path) for task, path in session.execute(query)]
+
+    def dependents(self, inspection_id: str, stage: str) -> list[str]:
+        """Fingerprints of the tasks of `stage` and of all that depend on them, in the plan as it stands."""
+        keys: set[str] = set()
+        names = []
+        for task in self.tasks(inspection_id):
+            if task.stage == stage or keys.intersection(task.depends):
+                keys.add(task.key)
+                names.append(task.fingerprint)
+        return [name for name in names if name]
+
+    def known_results(self) -> dict[str, str]:
+        """Path of every known result by fingerprint."""
+        with self.db.read() as session:
+            rows = session.execute(select(ResultRow.fingerprint, ResultRow.path))
+            return {fingerprint: path for fingerprint, path in rows}  # noqa: C416 - rows are not plain tuples
+
+    def adopt(self, results: Iterable[Result]) -> None:
+        """Take up results whose files were finished but whose commit a crash cut off."""
+        with self.db.write() as session:
+            now = self.db.now(session)
+            for result in results:
+                put_result(session, result, now)
+
+    def forget(self, fingerprints: Iterable[str]) -> None:
+        """Remove results from memory; whoever calls removes their files afterwards, never before."""
+        with self.db.write() as session:
+            for fingerprint in fingerprints:
+                session.execute(delete(ResultRow).where(ResultRow.fingerprint == fingerprint))
+
+    def unused(self) -> list[str]:
+        """Fingerprints that no plan uses, now or under its previous parameters: the ones to clean up."""
+        with self.db.read() as session:
+            used = set(session.scalars(select(Task.fingerprint).where(Task.fingerprint.is_not(None)).distinct()))
+            for previous in session.scalars(select(Inspection.previous)):
+                used.update(previous)
+            return [name for name in session.scalars(select(ResultRow.fingerprint)) if name not in used]
+
+
+def _view(row: Inspection) -> InspectionView:
+    return InspectionView(
+        id=row.id,
+        state=row.state,
+        files=input_files(row),
+        input_digest=row.input_digest,
+        settings=dict(row.settings),
+        out=row.out,
+        failed_stage=row.failed_stage,
+        error=row.error,
+    )
+
+
+def _task_view(task: Task, path: str | None) -> TaskView:
+    return TaskView(
+        key=task.key,
+        stage=task.stage,
+        position=task.position,
+        depends=tuple(task.depends),
+        optional=task.optional,
+        state=task.state,
+        attempt=task.attempt,
+        fingerprint=task.fingerprint,
+        seconds=task.seconds,
+        peak_rss_bytes=task.peak_rss_bytes,
+        progress=task.progress,
+        reused=task.reused,
+        digest=task.digest,
+        facts=task.facts,
+        error=task.error,
+        path=path if task.state == "succeeded" else None,
+    )

@@ -1,0 +1,131 @@
+"""Small steps on leases that `store.plan` puts together; each runs inside the caller's transaction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from pathlib import PurePosixPath
+from typing import Any
+
+from sqlalchemy import ColumnElement, CursorResult, Update, select, update
+from sqlalchemy.orm import Session
+
+from core.errors import BadInput
+from store.models import Attempt, Inspection, Task
+from store.models import Result as ResultRow
+from store.records import InputFiles, Lease, Result
+
+LEASABLE = ("queued", "running")
+"""States of an inspection whose tasks may start."""
+
+
+def lock_inspection(session: Session, inspection_id: str) -> Inspection:
+    """The inspection, held against every other change of its plan until the transaction ends."""
+    query = select(Inspection).where(Inspection.id == inspection_id).with_for_update()
+    inspection = session.scalars(query.execution_options(populate_existing=True)).one_or_none()
+    if inspection is None:
+        raise BadInput(f"there is no inspection '{inspection_id}'", where="inspection")
+    return inspection
+
+
+def changed(session: Session, statement: Update) -> bool:
+    """Run an update; True when it met a row. The database compares, so of two callers one succeeds."""
+    done = session.execute(statement, execution_options={"synchronize_session": False})
+    assert isinstance(done, CursorResult)
+    return bool(done.rowcount)
+
+
+def held(lease: Lease) -> tuple[ColumnElement[bool], ...]:
+    """The condition under which a lease still counts."""
+    return (Task.id == lease.task_id, Task.fence == lease.fence, Task.state == "leased")
+
+
+def lease_of(session: Session, inspection: Inspection, task: Task) -> Lease:
+    """The lease as a value, with the results of the task's dependencies."""
+    query = select(Task).where(
+        Task.inspection_id == inspection.id, Task.key.in_(task.depends), Task.state == "succeeded"
+    )
+    done = session.scalars(query).all()
+    names = [dep.fingerprint for dep in done]
+    paths = {
+        row.fingerprint: row.path for row in session.scalars(select(ResultRow).where(ResultRow.fingerprint.in_(names)))
+    }
+    return Lease(
+        task_id=task.id,
+        fence=task.fence,
+        attempt=task.attempt,
+        owner=task.lease_owner or "",
+        inspection_id=inspection.id,
+        key=task.key,
+        stage=task.stage,
+        args=dict(task.args),
+        optional=task.optional,
+        fingerprint=task.fingerprint or "",
+        settings=dict(inspection.settings),
+        files=input_files(inspection),
+        inputs={dep.key: PurePosixPath(paths[dep.fingerprint or ""]) for dep in done},
+        facts={dep.key: dict(dep.facts or {}) for dep in done},
+    )
+
+
+def input_files(inspection: Inspection) -> InputFiles:
+    """The inspection's input as a value."""
+    return InputFiles(
+        video=inspection.video_path,
+        video_sha256=inspection.video_sha256,
+        annotations=inspection.annotations_path,
+        annotations_sha256=inspection.annotations_sha256,
+    )
+
+
+def begin_attempt(session: Session, task: Task, now: datetime) -> None:
+    """Open the history of a lease."""
+    session.add(
+        Attempt(
+            inspection_id=task.inspection_id,
+            task_id=task.id,
+            key=task.key,
+            fence=task.fence,
+            attempt=task.attempt,
+            owner=task.lease_owner or "",
+            fingerprint=task.fingerprint or "",
+            started_at=now,
+            outcome="running",
+        )
+    )
+
+
+def end_attempt(
+    session: Session, task_id: int, fence: int, now: datetime, outcome: str, values: Mapping[str, Any] | None = None
+) -> None:
+    """Close the history of a lease."""
+    where = (Attempt.task_id == task_id, Attempt.fence == fence)
+    session.execute(update(Attempt).where(*where).values(ended_at=now, outcome=outcome, **(values or {})))
+
+
+def give_back(task: Task, inspection: Inspection, now: datetime, *, counts: bool) -> None:
+    """Undo a lease: the task may start again, or is cancelled with its inspection."""
+    task.lease_owner, task.lease_expires_at = None, None
+    task.progress, task.message = 0.0, ""
+    if not counts:
+        task.attempt -= 1
+    if inspection.state in LEASABLE:
+        task.state = "runnable"
+    else:
+        task.state, task.ended_at = "cancelled", now
+
+
+def put_result(session: Session, result: Result, now: datetime) -> ResultRow:
+    """Remember a finished result by its fingerprint."""
+    row = ResultRow(
+        fingerprint=result.fingerprint,
+        stage=result.stage,
+        digest=result.digest,
+        facts=dict(result.facts),
+        rows=dict(result.rows),
+        path=result.path,
+        seconds=result.seconds,
+        peak_rss_bytes=result.peak_rss_bytes,
+        created_at=now,
+    )
+    return session.merge(row)

@@ -1,0 +1,260 @@
+"""Tables. `migrations/` is what creates them; a test compares both."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import JSON, BigInteger, DateTime, Dialect, ForeignKey, Index, MetaData, String, UniqueConstraint
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.types import TypeDecorator
+
+ACTIVE_INSPECTION = ("queued", "running", "cancelling")
+"""States of an inspection that is not over."""
+OVER_TASK = ("succeeded", "failed", "skipped", "cancelled")
+"""States of a task that will not change by itself."""
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """A moment in UTC, the same on both databases (SQLite keeps no zone)."""
+
+    impl = DateTime
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """Store as naive UTC."""
+        return None if value is None else value.astimezone(UTC).replace(tzinfo=None)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """Read back with its zone."""
+        return None if value is None else value.replace(tzinfo=UTC)
+
+
+class Base(DeclarativeBase):
+    """Names of constraints are fixed, so that migrations can speak of them."""
+
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_name)s_%(referred_table_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012 - SQLAlchemy reads this class attribute
+        datetime: UtcDateTime,
+        dict[str, Any]: JSON(none_as_null=True),
+        list[str]: JSON,
+    }
+
+
+def _inspection_key(primary: bool = True) -> Mapped[str]:
+    """Whose the row is; first in the primary key, because every question is asked for one inspection."""
+    key = ForeignKey("inspections.id", ondelete="CASCADE")
+    return mapped_column(String(64), key, primary_key=primary, sort_order=-1 if primary else 0)
+
+
+class Inspection(Base):
+    """One video, its annotations, its parameters, its result."""
+
+    __tablename__ = "inspections"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    state: Mapped[str] = mapped_column(String(16), index=True)
+    """queued, running, cancelling, cancelled, succeeded, partial, failed."""
+    video_path: Mapped[str]
+    video_sha256: Mapped[str] = mapped_column(String(64))
+    annotations_path: Mapped[str | None]
+    annotations_sha256: Mapped[str | None] = mapped_column(String(64))
+    input_digest: Mapped[str] = mapped_column(String(64))
+    settings: Mapped[dict[str, Any]]
+    out: Mapped[str]
+    failed_stage: Mapped[str | None] = mapped_column(String(64))
+    error: Mapped[dict[str, Any] | None]
+    previous: Mapped[list[str]]
+    """Fingerprints of the plan before the last change of parameters: going back to it costs nothing."""
+    created_at: Mapped[datetime]
+    started_at: Mapped[datetime | None]
+    ended_at: Mapped[datetime | None]
+    updated_at: Mapped[datetime]
+
+
+class Task(Base):
+    """One task of a plan, with its lease."""
+
+    __tablename__ = "tasks"
+    __table_args__ = (
+        UniqueConstraint("inspection_id", "key"),
+        Index("ix_tasks_state_lease_expires_at", "state", "lease_expires_at"),
+        # A deleted row's id must never come back: a late result of the old row would be taken for the new one's.
+        {"sqlite_autoincrement": True},
+    )
+
+    id: Mapped[int] = mapped_column(primary_key=True)
+    inspection_id: Mapped[str] = _inspection_key(primary=False)
+    key: Mapped[str] = mapped_column(String(128))
+    stage: Mapped[str] = mapped_column(String(64))
+    queue: Mapped[str] = mapped_column(String(16))
+    position: Mapped[int]
+    """Order in the plan; runnable tasks are leased in this order."""
+    args: Mapped[dict[str, Any]]
+    depends: Mapped[list[str]]
+    optional: Mapped[bool]
+    state: Mapped[str] = mapped_column(String(16))
+    """waiting, runnable, leased, succeeded, failed, skipped, cancelled."""
+    fingerprint: Mapped[str | None] = mapped_column(String(64), index=True)
+    attempt: Mapped[int] = mapped_column(default=0)
+    """Attempts begun, less those that were given back unharmed."""
+    fence: Mapped[int] = mapped_column(default=0)
+    """Grows with every lease; only the holder of the newest may end the task."""
+    lease_owner: Mapped[str | None] = mapped_column(String(128))
+    lease_expires_at: Mapped[datetime | None]
+    started_at: Mapped[datetime | None]
+    ended_at: Mapped[datetime | None]
+    seconds: Mapped[float | None]
+    peak_rss_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    progress: Mapped[float] = mapped_column(default=0.0)
+    message: Mapped[str] = mapped_column(String(256), default="")
+    reused: Mapped[bool] = mapped_column(default=False)
+    digest: Mapped[str | None] = mapped_column(String(64))
+    facts: Mapped[dict[str, Any] | None]
+    error: Mapped[dict[str, Any] | None]
+
+
+class Attempt(Base):
+    """History: every lease ever given and how it ended."""
+
+    __tablename__ = "attempts"
+    __table_args__ = (UniqueConstraint("task_id", "fence"), {"sqlite_autoincrement": True})
+
+    id: Mapped[int] = mapped_column(primary_key=True)
+    inspection_id: Mapped[str] = mapped_column(String(64), ForeignKey("inspections.id", ondelete="CASCADE"), index=True)
+    task_id: Mapped[int]
+    """Not a foreign key: history outlives a rebuilt plan."""
+    key: Mapped[str] = mapped_column(String(128))
+    fence: Mapped[int]
+    attempt: Mapped[int]
+    owner: Mapped[str] = mapped_column(String(128))
+    fingerprint: Mapped[str] = mapped_column(String(64))
+    started_at: Mapped[datetime]
+    ended_at: Mapped[datetime | None]
+    outcome: Mapped[str] = mapped_column(String(16))
+    """running, succeeded, failed, retried, released, expired, cancelled, refused."""
+    seconds: Mapped[float | None]
+    peak_rss_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    error: Mapped[dict[str, Any] | None]
+
+
+class Result(Base):
+    """A finished result by fingerprint; its files lie under `path`."""
+
+    __tablename__ = "results"
+
+    fingerprint: Mapped[str] = mapped_column(String(64), primary_key=True)
+    stage: Mapped[str] = mapped_column(String(64))
+    digest: Mapped[str] = mapped_column(String(64))
+    facts: Mapped[dict[str, Any]]
+    rows: Mapped[dict[str, Any]]
+    """What the table rows of this result are made from; see `store.rows`."""
+    path: Mapped[str]
+    seconds: Mapped[float]
+    peak_rss_bytes: Mapped[int] = mapped_column(BigInteger)
+    created_at: Mapped[datetime]
+
+
+class _Row:
+    """Common to rows that a stage writes: whose they are and which task wrote them."""
+
+    inspection_id: Mapped[str] = _inspection_key()
+    task_key: Mapped[str] = mapped_column(String(128))
+
+
+class CaseRow(_Row, Base):
+    """A row of cases.csv."""
+
+    __tablename__ = "cases"
+
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(16))
+    start: Mapped[int]
+    end: Mapped[int]
+    status: Mapped[str] = mapped_column(String(16))
+    reason: Mapped[str | None]
+    frames: Mapped[int]
+    models: Mapped[int]
+    registered_images: Mapped[int]
+    points3D: Mapped[int]  # noqa: N815 - the contract's column
+    mean_reprojection_error_px: Mapped[float | None]
+    median_reprojection_error_px: Mapped[float | None]
+    seconds: Mapped[float]
+    start_mode: Mapped[str | None] = mapped_column(String(16))
+    selected: Mapped[int] = mapped_column(default=0)
+
+
+class DetectionRow(_Row, Base):
+    """A row of detections.csv."""
+
+    __tablename__ = "detections"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    key: Mapped[str]
+    time_s: Mapped[float | None]
+    label: Mapped[str]
+    score: Mapped[float | None]
+    box_x1: Mapped[float]
+    box_y1: Mapped[float]
+    box_x2: Mapped[float]
+    box_y2: Mapped[float]
+    frame_index: Mapped[int | None]
+    outcome: Mapped[str] = mapped_column(String(16))
+    reason: Mapped[str | None] = mapped_column(String(64))
+    rung: Mapped[str | None] = mapped_column(String(16))
+    support_points: Mapped[int | None]
+    x: Mapped[float | None]
+    y: Mapped[float | None]
+    z: Mapped[float | None]
+    confidence: Mapped[float | None]
+    blade: Mapped[str | None]
+    defect_id: Mapped[int | None]
+    model: Mapped[int | None]
+
+
+class EventRow(_Row, Base):
+    """A row of timeline.csv."""
+
+    __tablename__ = "events"
+
+    event_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    defect_id: Mapped[int | None]
+    label: Mapped[str]
+    start_s: Mapped[float]
+    end_s: Mapped[float]
+    n_detections: Mapped[int]
+    n_frames: Mapped[int]
+    x: Mapped[float | None]
+    y: Mapped[float | None]
+    z: Mapped[float | None]
+    radius: Mapped[float | None]
+    confidence: Mapped[float | None]
+
+
+class DefectRow(_Row, Base):
+    """A record of defects.json; `record` is the whole of it."""
+
+    __tablename__ = "defects"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    label: Mapped[str]
+    x: Mapped[float | None]
+    y: Mapped[float | None]
+    z: Mapped[float | None]
+    record: Mapped[dict[str, Any]]
+
+
+class MetricRow(_Row, Base):
+    """One number that a task found, named ``<task key>.<fact>``."""
+
+    __tablename__ = "metrics"
+
+    name: Mapped[str] = mapped_column(String(192), primary_key=True)
+    value: Mapped[float]

@@ -1,0 +1,95 @@
+"""What crosses the border of the store: frozen values, never rows that are tied to a session."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any
+
+from core.stage import Facts
+
+
+@dataclass(frozen=True)
+class InputFiles:
+    """The input of an inspection, by path and by content."""
+
+    video: str
+    video_sha256: str
+    annotations: str | None
+    annotations_sha256: str | None
+
+
+@dataclass(frozen=True)
+class Lease:
+    """The right to run one task and to end it, until it expires."""
+
+    task_id: int
+    fence: int
+    attempt: int
+    owner: str
+    inspection_id: str
+    key: str
+    stage: str
+    args: Mapping[str, Any]
+    optional: bool
+    fingerprint: str
+    settings: Mapping[str, Any]
+    files: InputFiles
+    inputs: Mapping[str, PurePosixPath]
+    """Relative result path of every dependency that has a result, by task key."""
+    facts: Mapping[str, Facts]
+    """Facts of the same."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """A finished result: what a task hands to `Plan.complete`."""
+
+    fingerprint: str
+    stage: str
+    digest: str
+    facts: Facts
+    path: str
+    """Relative to the results' root, with ``/``."""
+    seconds: float
+    peak_rss_bytes: int
+    rows: Mapping[str, Any] = field(default_factory=dict)
+    """What table rows are made from; see `store.rows`."""
+
+
+@dataclass(frozen=True)
+class TaskView:
+    """A task as others may see it."""
+
+    key: str
+    stage: str
+    position: int
+    depends: tuple[str, ...]
+    optional: bool
+    state: str
+    attempt: int
+    fingerprint: str | None
+    seconds: float | None
+    peak_rss_bytes: int | None
+    progress: float
+    reused: bool
+    digest: str | None
+    facts: Facts | None
+    error: Mapping[str, Any] | None
+    path: str | None
+    """Relative result path when it succeeded."""
+
+
+@dataclass(frozen=True)
+class InspectionView:
+    """An inspection as others may see it."""
+
+    id: str
+    state: str
+    files: InputFiles
+    input_digest: str
+    settings: Mapping[str, Any]
+    out: str
+    failed_stage: str | None
+    error: Mapping[str, Any] | None

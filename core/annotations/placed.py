@@ -1,0 +1,124 @@
+"""Annotations put on frames: which source frame each time key means, and the files that say so."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core.annotations.checks import shown
+from core.annotations.model import Annotations, Box, Mask, Polygon
+from core.errors import BadInput
+from core.flags import Flag
+from core.video.table import FrameTable
+
+MAX_OUTSIDE_SHARE = 0.5
+"""With more of the keys beyond the video, the annotations were made on another one."""
+
+
+@dataclass(frozen=True)
+class PlacedDetection:
+    """One row of `detections.json`; coordinates are shares of the source frame."""
+
+    id: int
+    key: str
+    time_s: float
+    label: str
+    score: float | None
+    box: Box
+    polygon: Polygon | None
+    track_id: str | int | None
+    source_index: int | None
+    """Source frame of the key; None when the key lies outside the video."""
+
+
+@dataclass(frozen=True)
+class PlacedAnnotations:
+    """All detections by id; masks by source frame; and what the reader should know."""
+
+    detections: tuple[PlacedDetection, ...]
+    masks: dict[int, tuple[Mask, ...]]
+    keys_outside: tuple[str, ...]
+    flags: tuple[Flag, ...]
+
+
+def place(annotations: Annotations, table: FrameTable) -> PlacedAnnotations:
+    """Give every key the frame whose exact PTS is nearest.
+
+    Keys outside the video keep their detections, without a frame. A cut-off video has annotations beyond
+    its end as a matter of course; otherwise many of them mean the wrong file.
+
+    Raises:
+        BadInput: `annotations_beyond_video`.
+    """
+    frames = {entry.key: table.frame_at(entry.time) for entry in annotations.entries}
+    outside = tuple(key for key, frame in frames.items() if frame is None)
+    allowed = 1.0 if table.info.truncated else MAX_OUTSIDE_SHARE
+    if outside and (len(outside) > allowed * len(frames) or len(outside) == len(frames)):
+        latest = max(annotations.entries, key=lambda entry: entry.time)
+        raise BadInput(
+            f"the annotations belong to another video: {len(outside)} of {len(frames)} time keys lie beyond its end "
+            f"at {table.info.duration_s:.3f} s (the latest is {shown(latest.key)})",
+            code="annotations_beyond_video",
+            where=shown(outside[0]),
+        )
+    masks: dict[int, tuple[Mask, ...]] = {}
+    for entry in annotations.entries:
+        frame = frames[entry.key]
+        if frame is not None and entry.masks:
+            masks[frame] = (*masks.get(frame, ()), *entry.masks)
+    flags: tuple[Flag, ...] = ()
+    if outside:
+        where = f"first key {shown(outside[0])}"
+        flags = (Flag("annotations_outside_video", "warning", float(len(outside)), 0.0, where),)
+    return PlacedAnnotations(
+        detections=tuple(
+            PlacedDetection(
+                id=d.id,
+                key=d.key,
+                time_s=float(d.time),
+                label=d.label,
+                score=d.score,
+                box=d.box,
+                polygon=d.polygon,
+                track_id=d.track_id,
+                source_index=frames[d.key],
+            )
+            for d in annotations.detections
+        ),
+        masks=masks,
+        keys_outside=outside,
+        flags=flags,
+    )
+
+
+def write_placed(placed: PlacedAnnotations, folder: Path) -> None:
+    """Write `detections.json` and `masks.json`."""
+    rows = [dict(detection.__dict__) for detection in placed.detections]
+    masks = {str(i): [dict(mask.__dict__) for mask in placed.masks[i]] for i in sorted(placed.masks)}
+    _write_json(folder / "detections.json", rows)
+    _write_json(folder / "masks.json", masks)
+
+
+def load_detections(folder: Path) -> list[PlacedDetection]:
+    """Read `detections.json` of the annotations task, by id."""
+    rows = json.loads((folder / "detections.json").read_text(encoding="utf-8"))
+    return [PlacedDetection(**{**row, "box": tuple(row["box"]), "polygon": _polygon(row["polygon"])}) for row in rows]
+
+
+def load_masks(folder: Path) -> dict[int, tuple[Mask, ...]]:
+    """Read `masks.json` of the annotations task: masks by source frame."""
+    rows = json.loads((folder / "masks.json").read_text(encoding="utf-8"))
+    return {
+        int(index): tuple(Mask(mask["label"], tuple(map(tuple, mask["polygon"]))) for mask in masks)
+        for index, masks in rows.items()
+    }
+
+
+def _polygon(value: list[list[float]] | None) -> Polygon | None:
+    return None if value is None else tuple((x, y) for x, y in value)
+
+
+def _write_json(path: Path, value: Any) -> None:
+    path.write_text(json.dumps(value, separators=(",", ":"), allow_nan=False) + "\n", encoding="utf-8")

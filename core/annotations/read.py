@@ -1,0 +1,81 @@
+"""From a file to JSON values, within limits: nothing here may exhaust memory or accept what is not JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from core.errors import BadInput
+from core.files import require_file
+
+MAX_BYTES = 64 * 1024 * 1024
+"""Largest annotation file. One as dense as the sample (5 kB a timestamp with masks) for the thesis's 3,745
+timestamps has 20 MB; the parsed form of 64 MiB at its worst still fits the 4 GiB that a stage may use."""
+
+
+def read_json(path: Path) -> Any:
+    """The JSON value in an annotation file. The size is looked at before anything is read.
+
+    Raises:
+        BadInput: `annotations_too_large`, or what `parse_json` or `require_file` raise.
+    """
+    size = require_file(path, "annotation")
+    if size > MAX_BYTES:
+        raise BadInput(
+            f"the annotation file '{path.name}' has {size / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB are read",
+            code="annotations_too_large",
+            where="annotations",
+        )
+    return parse_json(path.read_bytes())
+
+
+def parse_json(data: bytes) -> Any:
+    """The JSON value of UTF-8 text; numbers that are not finite are left for the checks, which know their place.
+
+    Raises:
+        BadInput: `annotations_not_utf8`, `annotations_malformed` (with line and column) or `duplicate_key`.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadInput(
+            f"the annotations are not UTF-8 text (byte {error.start})", code="annotations_not_utf8", where="annotations"
+        ) from None
+    try:
+        return json.loads(text, object_pairs_hook=_object)
+    except json.JSONDecodeError as error:
+        raise BadInput(
+            f"the annotations are not valid JSON: {error.msg} at line {error.lineno}, column {error.colno}",
+            code="annotations_malformed",
+            where=f"line {error.lineno}, column {error.colno}",
+        ) from None
+    except RecursionError:
+        raise BadInput(
+            "the annotations are not usable: their JSON is nested too deeply",
+            code="annotations_malformed",
+            where="annotations",
+        ) from None
+    except ValueError:
+        raise BadInput(
+            "the annotations are not usable: they hold a number with thousands of digits",
+            code="annotations_malformed",
+            where="annotations",
+        ) from None
+
+
+def _object(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object; a key that occurs twice is refused, because one of the two would be lost silently."""
+    values = dict(pairs)
+    if len(values) != len(pairs):
+        seen: set[str] = set()
+        for key, _ in pairs:
+            if key in seen:
+                raise BadInput(
+                    f"key {json.dumps(key)[:80]} occurs twice in one object of the annotations",
+                    code="duplicate_key",
+                    where=json.dumps(key)[:80],
+                )
+            seen.add(key)
+    return values

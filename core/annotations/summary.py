@@ -1,0 +1,81 @@
+"""What was understood of an annotation file, for people (`bladeatlas check`)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from core.annotations.model import Annotations
+from core.annotations.placed import PlacedAnnotations
+
+CONVENTION = (
+    "keys are seconds from the first frame; boxes are [left, upper, right, lower] and polygons [x, y], "
+    "both as shares of the whole source frame"
+)
+_SHOWN = 10
+
+
+@dataclass(frozen=True)
+class AnnotationSummary:
+    """Counts and oddities; times in seconds from the first frame."""
+
+    n_keys: int
+    n_keys_with_detections: int
+    n_detections: int
+    detections_by_label: dict[str, int]
+    n_masks: int
+    masks_by_label: dict[str, int]
+    n_with_polygon: int
+    """Detections that have an outline, their own or that of a mask."""
+    n_with_track: int
+    first_time_s: float | None
+    last_time_s: float | None
+    convention: str
+    n_keys_outside_video: int | None
+    """None when no video was given."""
+    n_annotated_frames: int | None
+    """Source frames with a detection; None when no video was given."""
+    n_warnings: int
+    warnings: tuple[str, ...]
+    """The first few."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON form."""
+        return {**self.__dict__, "warnings": list(self.warnings)}
+
+
+def summarise(annotations: Annotations, placed: PlacedAnnotations | None = None) -> AnnotationSummary:
+    """Summarise checked annotations, with their frames when the video is known."""
+    detections = annotations.detections
+    times = [entry.time for entry in annotations.entries]
+    warnings = list(annotations.warnings)
+    if placed is not None:
+        warnings += [f"key {key!r} lies outside the video" for key in placed.keys_outside]
+    return AnnotationSummary(
+        n_keys=len(annotations.entries),
+        n_keys_with_detections=sum(bool(entry.detections) for entry in annotations.entries),
+        n_detections=len(detections),
+        detections_by_label=_counts(d.label for d in detections),
+        n_masks=sum(len(entry.masks) for entry in annotations.entries),
+        masks_by_label=_counts(mask.label for entry in annotations.entries for mask in entry.masks),
+        n_with_polygon=sum(d.polygon is not None for d in detections),
+        n_with_track=sum(d.track_id is not None for d in detections),
+        first_time_s=float(min(times)) if times else None,
+        last_time_s=float(max(times)) if times else None,
+        convention=CONVENTION,
+        n_keys_outside_video=None if placed is None else len(placed.keys_outside),
+        n_annotated_frames=None if placed is None else n_annotated_frames(placed),
+        n_warnings=len(warnings),
+        warnings=tuple(warnings[:_SHOWN]),
+    )
+
+
+def n_annotated_frames(placed: PlacedAnnotations) -> int:
+    """How many source frames carry a detection."""
+    return len({d.source_index for d in placed.detections} - {None})
+
+
+def _counts(labels: Iterable[str]) -> dict[str, int]:
+    return dict(sorted(Counter(labels).items()))

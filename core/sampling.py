@@ -1,0 +1,143 @@
+"""Which source frames take part: the clip interval, uniform sampling, and frames with detections."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from core.errors import BadInput
+from core.flags import Flag
+from core.settings.groups import FrameSettings
+from core.video.table import FrameTable
+
+MIN_CLIPPED_S = 10
+"""A preset's interval that keeps less than this of the video says nothing about it; the whole is used."""
+
+Role = Literal["sampled", "annotated", "both", "added"]
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Source frames first ... last, both used, and what had to be said about choosing them."""
+
+    first: int
+    last: int
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def n_frames(self) -> int:
+        """Frames in the interval."""
+        return self.last - self.first + 1
+
+
+@dataclass(frozen=True)
+class ChosenFrame:
+    """One frame of the run. `index` numbers the exported images."""
+
+    index: int
+    source_index: int
+    role: Role
+
+
+def clip_interval(table: FrameTable, settings: FrameSettings, overrides: Collection[str]) -> Interval:
+    """The used interval of the video.
+
+    A bound that the user set (its name is in `overrides`) must lie within the video. A preset's bounds
+    are cut to it; when that leaves under `MIN_CLIPPED_S` seconds, the preset's bounds are dropped.
+
+    Raises:
+        BadInput: `interval_outside`, `interval_empty`.
+    """
+    end_s = Fraction(table.info.duration_s)
+    bounds = {
+        name: None if value is None else Fraction(value)
+        for name, value in (("clip_start_s", settings.clip_start_s), ("clip_end_s", settings.clip_end_s))
+    }
+    given = {name for name in bounds if f"frames.{name}" in overrides and bounds[name] is not None}
+    for name in sorted(given):
+        value = bounds[name]
+        if value is not None and (value < 0 or value > end_s or (name == "clip_start_s" and value == end_s)):
+            raise BadInput(
+                f"frames.{name} = {float(value):g} s lies outside the video (0 to {float(end_s):.3f} s)",
+                code="interval_outside",
+                where=f"frames.{name}",
+            )
+    start, end = bounds["clip_start_s"] or Fraction(0), bounds["clip_end_s"]
+    end = end_s if end is None else end
+    flags: tuple[Flag, ...] = ()
+    if len(given) < 2 and (end > end_s or start >= end_s or (given and start >= end)):
+        flags = (Flag("interval_clipped", "warning", float(end), float(end_s), f"{float(start):g}-{float(end):g} s"),)
+        end = min(end, end_s)
+        if end - start < MIN_CLIPPED_S:
+            start = start if "clip_start_s" in given else Fraction(0)
+            end = end if "clip_end_s" in given else end_s
+    if start >= end:
+        raise BadInput(
+            f"the interval {float(start):g} to {float(end):g} s is empty", code="interval_empty", where="frames"
+        )
+    first, last = _frame_of(table, start, settings), _frame_of(table, end, settings)
+    if last <= first:
+        raise BadInput(
+            f"the interval {float(start):g} to {float(end):g} s holds only one frame of the video",
+            code="interval_empty",
+            where="frames",
+        )
+    return Interval(first, last, flags)
+
+
+def _frame_of(table: FrameTable, time_s: Fraction, settings: FrameSettings) -> int:
+    if settings.time_rule == "average_rate":
+        return min(round(time_s * table.info.average_rate), table.info.n_frames - 1)
+    return table.nearest(time_s)
+
+
+def sample_uniformly(first: int, last: int, count: int) -> list[int]:
+    """`count` source frames from `first` to `last`, evenly by rounding; all of them when there are fewer.
+
+    450 over 60-3606 is the thesis's choice. Strictly increasing: the spacing is at least one frame.
+    Exactly half is rounded up, in integers, so that no machine rounds differently.
+    """
+    count = min(count, last - first + 1)
+    if count == 1:
+        return [first]
+    steps = count - 1
+    return [first + (2 * i * (last - first) + steps) // (2 * steps) for i in range(count)]
+
+
+def choose_frames(interval: Interval, annotated: Collection[int], settings: FrameSettings) -> list[ChosenFrame]:
+    """Sampled and annotated frames by time, then the annotated ones that the budget leaves over.
+
+    Args:
+        interval: the used part of the video.
+        annotated: source frames with a detection; those outside the interval are left alone.
+        settings: count, include_annotated, max_count.
+
+    Returns:
+        Frames of the search numbered by time from 0 (roles `sampled`, `annotated`, `both`), followed by
+        those to register afterwards (role `added`), by time too.
+    """
+    sampled = sample_uniformly(interval.first, interval.last, settings.count)
+    wanted: set[int] = set()
+    if settings.include_annotated:
+        wanted = {i for i in annotated if interval.first <= i <= interval.last}
+    extra = sorted(wanted.difference(sampled))
+    room = max(0, settings.max_count - len(sampled))
+    taken = _spread(extra, room)
+    search = sorted({*sampled, *taken})
+    in_sample = set(sampled)
+    chosen: list[ChosenFrame] = []
+    for source in search:
+        role: Role = "annotated" if source not in in_sample else "both" if source in wanted else "sampled"
+        chosen.append(ChosenFrame(len(chosen), source, role))
+    for source in sorted(set(extra).difference(taken)):
+        chosen.append(ChosenFrame(len(chosen), source, "added"))
+    return chosen
+
+
+def _spread(items: Sequence[int], count: int) -> list[int]:
+    """At most `count` of `items`, evenly by rank."""
+    if count == 0 or not items:
+        return []
+    return [items[i] for i in sample_uniformly(0, len(items) - 1, count)]

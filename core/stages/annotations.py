@@ -1,0 +1,32 @@
+"""Stage `annotations`: the annotation file checked, typed and put on frames."""
+
+from __future__ import annotations
+
+from core.annotations.parse import load_annotations
+from core.annotations.placed import place, write_placed
+from core.annotations.summary import summarise
+from core.stage import StageResult, StageTask
+from core.video.table import FrameTable
+
+
+def run(task: StageTask) -> StageResult:
+    """Write `detections.json` and `masks.json`; `BadInput` when the file cannot be used.
+
+    Without an annotation file both are empty.
+    """
+    annotations = load_annotations(task.annotations)
+    task.report(1, 2, f"{len(annotations.entries)} time keys")
+    placed = place(annotations, FrameTable.read(task.input("probe")))
+    write_placed(placed, task.out)
+    summary = summarise(annotations, placed)
+    return StageResult(
+        {
+            "n_detections": summary.n_detections,
+            "n_keys": summary.n_keys,
+            "n_annotated_frames": summary.n_annotated_frames,
+            "n_without_frame": sum(d.source_index is None for d in placed.detections),
+            "labels": summary.detections_by_label,
+            "warnings": list(summary.warnings),
+            "flags": [flag.to_dict() for flag in placed.flags],
+        }
+    )

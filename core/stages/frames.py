@@ -1,0 +1,59 @@
+"""Stage `frames`: the frames that take part, cropped to the region of interest."""
+
+from __future__ import annotations
+
+import json
+
+from core.annotations.placed import load_detections
+from core.roi import crop_of
+from core.sampling import choose_frames, clip_interval
+from core.stage import StageResult, StageTask
+from core.video.export import export_frames
+from core.video.table import FrameTable
+
+
+def run(task: StageTask) -> StageResult:
+    """Write `images/`, `frames.json` and `crop.json`; `BadInput` for an impossible interval or region."""
+    settings = task.settings
+    table = FrameTable.read(task.input("probe"))
+    detections = load_detections(task.input("annotations"))
+    crop = crop_of(settings.roi, table.info.width, table.info.height)
+    interval = clip_interval(table, settings.frames, settings.overrides)
+    annotated = {d.source_index for d in detections if d.source_index is not None}
+    chosen = choose_frames(interval, annotated, settings.frames)
+    until = max(frame.source_index for frame in chosen) + 1
+
+    images = task.out / "images"
+    images.mkdir()
+    export_frames(
+        task.video,
+        table,
+        chosen,
+        crop,
+        images,
+        jpeg_quality=settings.frames.jpeg_quality,
+        on_frame=lambda done: task.report(done, until, f"frame {done} of {until}"),
+    )
+    rows = [
+        {
+            "index": frame.index,
+            "source_index": frame.source_index,
+            "pts": table.rows[frame.source_index].pts,
+            "time_s": table.rows[frame.source_index].time_s,
+            "sha256": table.rows[frame.source_index].sha256,
+            "role": frame.role,
+        }
+        for frame in chosen
+    ]
+    (task.out / "frames.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    (task.out / "crop.json").write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")
+    return StageResult(
+        {
+            "n_frames": len(chosen),
+            "n_search": sum(frame.role != "added" for frame in chosen),
+            "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
+            "source_width": crop.source_width,
+            "source_height": crop.source_height,
+            "flags": [flag.to_dict() for flag in interval.flags],
+        }
+    )

@@ -1,0 +1,31 @@
+"""Stage `probe`: the video decoded once; its facts and its frame table."""
+
+from __future__ import annotations
+
+from core.flags import Flag
+from core.stage import StageResult, StageTask
+from core.video.probe import probe_video
+from core.video.table import rational_text
+
+
+def run(task: StageTask) -> StageResult:
+    """Write `video.json` and `table.csv`; `BadInput` when the video cannot be used."""
+
+    def on_frame(done: int, declared: int) -> None:
+        task.report(done, max(done, declared), f"frame {done}")
+
+    table = probe_video(task.video, allow_truncated=task.settings.input.allow_truncated, on_frame=on_frame)
+    table.write(task.out)
+    info = table.info
+    flags = [Flag("truncated_video", "warning", where="; ".join(info.damage))] if info.truncated else []
+    return StageResult(
+        {
+            "n_frames": info.n_frames,
+            "width": info.width,
+            "height": info.height,
+            "average_rate": rational_text(info.average_rate),
+            "duration_s": info.duration_s,
+            "truncated": info.truncated,
+            "flags": [flag.to_dict() for flag in flags],
+        }
+    )

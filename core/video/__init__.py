@@ -1,0 +1,1 @@
+"""Video in: one decoding path, exact times, one frame table."""

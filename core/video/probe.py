@@ -1,0 +1,109 @@
+"""Decode a video once and know everything that later stages ask of it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+
+from core.errors import BadInput
+from core.fingerprint import digest_of_file
+from core.video.decode import VideoReader
+from core.video.table import FrameRow, FrameTable, VideoInfo
+
+_END_TOLERANCE_S = Fraction(1, 2)
+"""Headers round, and audio ends a little apart from video; less than this at the end is no damage."""
+_END_TOLERANCE_FRAMES = 3
+_RATE_TOLERANCE = Fraction(1, 100)
+
+OnFrame = Callable[[int, int], None]
+"""Called with (frames done, frames declared or 0)."""
+
+
+def probe_video(path: Path, *, allow_truncated: bool = False, on_frame: OnFrame | None = None) -> FrameTable:
+    """Decode all frames in one pass of constant memory and return the frame table.
+
+    Args:
+        path: the video.
+        allow_truncated: take the decodable part of a damaged video instead of refusing it.
+        on_frame: progress; may raise to stop.
+
+    Raises:
+        BadInput: `not_a_video`, `audio_only`, `unknown_codec`, `no_frames`, `single_frame`,
+            `truncated_video`, `frame_size_changes`, `unsupported_rotation`, or a file error of
+            `core.files.require_file`. Each message names cause and file.
+    """
+    rows: list[FrameRow] = []
+    shape = (0, 0, 0)
+    with VideoReader(path) as reader:
+        for frame in reader.frames():
+            rgb = frame.rgb()
+            shape = rgb.shape
+            first = rows[0].pts if rows else frame.pts
+            time_s = float((frame.pts - first) * reader.time_base)
+            rows.append(FrameRow(frame.index, frame.pts, time_s, frame.keyframe, hashlib.sha256(rgb.data).hexdigest()))
+            if on_frame:
+                on_frame(len(rows), reader.declared_frames)
+        damage = _damage(reader, len(rows))
+        if damage and not allow_truncated:
+            raise BadInput(
+                f"the video '{path.name}' is truncated or damaged: {', '.join(damage)}; "
+                f"{len(rows)} frames decode (--allow-truncated uses them)",
+                code="truncated_video",
+                where="video",
+            )
+        _require_frames(path, len(rows))
+        rate = _average_rate(reader, rows)
+        seconds_known = (reader.end_pts() - rows[0].pts) * reader.time_base
+        seconds_at_rate = (rows[-1].pts - rows[0].pts) * reader.time_base + 1 / rate
+        info = VideoInfo(
+            width=shape[1],
+            height=shape[0],
+            rotation_deg=reader.orientation.rotation_deg,
+            mirrored=reader.orientation.mirrored,
+            average_rate=rate,
+            time_base=reader.time_base,
+            duration_s=max(float(seconds_known), float(seconds_at_rate)),
+            n_frames=len(rows),
+            codec=reader.codec,
+            sha256=digest_of_file(path),
+            truncated=bool(damage),
+            damage=tuple(damage),
+            repaired_times=reader.repaired_times,
+        )
+    return FrameTable(info, tuple(rows))
+
+
+def _require_frames(path: Path, n_frames: int) -> None:
+    if n_frames == 0:
+        raise BadInput(f"the video '{path.name}' holds no frame that decodes", code="no_frames", where="video")
+    if n_frames == 1:
+        raise BadInput(
+            f"the video '{path.name}' holds only one frame; nothing can be measured from one view",
+            code="single_frame",
+            where="video",
+        )
+
+
+def _damage(reader: VideoReader, n_frames: int) -> list[str]:
+    """What is wrong with the file, in words; empty for a sound one."""
+    damage = list(reader.damage)
+    rate = reader.declared_rate or Fraction(25)
+    missing = reader.missing_at_end_s()
+    if n_frames and missing > max(_END_TOLERANCE_S, _END_TOLERANCE_FRAMES / rate):
+        damage.append(f"{float(missing):.1f} s missing at the end")
+    return damage
+
+
+def _average_rate(reader: VideoReader, rows: list[FrameRow]) -> Fraction:
+    """Frames per second: the container's figure where the frames bear it out, else that of the frames.
+
+    Containers round their times, so their own figure is the better one for a constant rate; for a cut or
+    repaired file it can be far off.
+    """
+    measured = Fraction(len(rows) - 1) / ((rows[-1].pts - rows[0].pts) * reader.time_base)
+    declared = reader.declared_rate
+    if declared and abs(declared - measured) <= _RATE_TOLERANCE * measured:
+        return declared
+    return measured.limit_denominator(1_000_000)

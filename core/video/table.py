@@ -1,0 +1,135 @@
+"""The frame table: which frame was shown when, exactly. Everything that needs a frame's time asks here."""
+
+from __future__ import annotations
+
+import csv
+import json
+from bisect import bisect_left
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from core.errors import StageFailed
+
+_COLUMNS = ("index", "pts", "time_s", "keyframe", "sha256")
+
+
+@dataclass(frozen=True)
+class VideoInfo:
+    """What is known of a video after decoding it once; sizes are those of the shown (turned) frame."""
+
+    width: int
+    height: int
+    rotation_deg: int
+    """Clockwise turn that the rotation flag asked for and that was applied."""
+    mirrored: bool
+    average_rate: Fraction
+    """Frames per second."""
+    time_base: Fraction
+    """Seconds per unit of pts."""
+    duration_s: float
+    """From the first frame to the end of the last."""
+    n_frames: int
+    codec: str
+    sha256: str
+    """Of the file."""
+    truncated: bool
+    """Damaged; the table holds the decodable part."""
+    damage: tuple[str, ...] = ()
+    repaired_times: int = 0
+    """Frames whose time in the file was missing or not after the one before."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The form of `video.json`; rationals as ``num/den``."""
+        row = dict(self.__dict__)
+        for name in ("average_rate", "time_base"):
+            row[name] = rational_text(row[name])
+        row["damage"] = list(self.damage)
+        return row
+
+    @classmethod
+    def from_dict(cls, row: dict[str, Any]) -> VideoInfo:
+        """Rebuild from `to_dict`."""
+        row = dict(row)
+        for name in ("average_rate", "time_base"):
+            row[name] = Fraction(row[name])
+        row["damage"] = tuple(row.get("damage", ()))
+        return cls(**row)
+
+
+@dataclass(frozen=True)
+class FrameRow:
+    """One decoded frame of the video."""
+
+    index: int
+    pts: int
+    time_s: float
+    """Seconds from the first frame, the float nearest to the exact time."""
+    keyframe: bool
+    sha256: str
+    """Of the RGB24 bytes of the whole shown frame."""
+
+
+@dataclass(frozen=True)
+class FrameTable:
+    """A video's facts and all its frames in presentation order, pts strictly increasing."""
+
+    info: VideoInfo
+    rows: tuple[FrameRow, ...]
+
+    @cached_property
+    def _pts(self) -> list[int]:
+        return [row.pts for row in self.rows]
+
+    def time(self, index: int) -> Fraction:
+        """Exact time of a frame in seconds from the first frame."""
+        return (self._pts[index] - self._pts[0]) * self.info.time_base
+
+    def nearest(self, time_s: Fraction) -> int:
+        """Index of the frame nearest to a time; the earlier one when two are equally near."""
+        units = time_s / self.info.time_base + self._pts[0]
+        right = bisect_left(self._pts, units)
+        if right == 0:
+            return 0
+        if right == len(self._pts):
+            return right - 1
+        return right - 1 if units - self._pts[right - 1] <= self._pts[right] - units else right
+
+    def frame_at(self, time_s: Fraction) -> int | None:
+        """The frame nearest to a time within the video; None outside it.
+
+        The video reaches from half a frame before its first frame up to one frame duration after its
+        last (longer when the file says that the last frame stays on).
+        """
+        step = 1 / self.info.average_rate
+        end = max(self.time(len(self.rows) - 1) + step, Fraction(self.info.duration_s))
+        return self.nearest(time_s) if -step / 2 <= time_s < end else None
+
+    def write(self, folder: Path) -> None:
+        """Write `video.json` and `table.csv`."""
+        (folder / "video.json").write_text(json.dumps(self.info.to_dict(), indent=1) + "\n", encoding="utf-8")
+        with (folder / "table.csv").open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(_COLUMNS)
+            for row in self.rows:
+                writer.writerow((row.index, row.pts, repr(row.time_s), int(row.keyframe), row.sha256))
+
+    @classmethod
+    def read(cls, folder: Path) -> FrameTable:
+        """Read what `write` wrote; `StageFailed` when the two files do not belong together."""
+        info = VideoInfo.from_dict(json.loads((folder / "video.json").read_text(encoding="utf-8")))
+        with (folder / "table.csv").open(newline="", encoding="utf-8") as stream:
+            rows = tuple(
+                FrameRow(int(r["index"]), int(r["pts"]), float(r["time_s"]), r["keyframe"] == "1", r["sha256"])
+                for r in csv.DictReader(stream)
+            )
+        if len(rows) != info.n_frames:
+            raise StageFailed(f"frame table has {len(rows)} rows for {info.n_frames} frames", where="probe")
+        return cls(info, rows)
+
+
+def rational_text(value: Fraction) -> str:
+    """``num/den``, also for whole numbers."""
+    return f"{value.numerator}/{value.denominator}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import islice
 from pathlib import Path
 
-from core.annotations.read import read_annotations
+from core.annotations.parse import load_annotations
 from core.errors import BadInput
 from core.settings import Settings
 from core.video.decode import VideoReader
@@ -19,7 +19,7 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     """
     check_video(video)
     if annotations is not None:
-        read_annotations(annotations)
+        load_annotations(annotations)
     check_roi(settings)
 
 

@@ -22,9 +22,6 @@ SHOWN_FILES = (
     ("quality.json", "how far the result can be trusted"),
     ("summary.json", "parameters, stages, headline numbers"),
 )
-_NO_HEADLINE = {
-    "schema_version", "state", "failed_stage", "reason", "parameters", "fingerprint", "versions", "scale", "stages",
-}  # fmt: skip
 
 
 def text(outcome: Outcome) -> str:
@@ -43,9 +40,9 @@ def text(outcome: Outcome) -> str:
 
 
 def _headline(summary: dict[str, Any]) -> list[str]:
-    numbers = dict(flatten({key: value for key, value in summary.items() if key not in _NO_HEADLINE}))
+    numbers = {name: value for name, value in summary.get("headline", {}).items() if value is not None}
     width = max((len(name) for name in numbers), default=0)
-    return ["", *(f"  {name:<{width}}  {_number(value)}" for name, value in numbers.items())] if numbers else []
+    return ["", *(f"  {name.replace('_', ' '):<{width}}  {_number(value)}" for name, value in numbers.items())]
 
 
 def _funnel(quality: dict[str, Any]) -> list[str]:
@@ -61,9 +58,11 @@ def _verdict(quality: dict[str, Any]) -> list[str]:
         return []
     lines = ["", f"  verdict: {quality.get('verdict')}"]
     for flag in quality.get("flags", []):
-        value, threshold = _number(flag.get("value")), _number(flag.get("threshold"))
-        where = f" at {flag['where']}" if flag.get("where") else ""
-        lines.append(f"  flag {flag.get('code')} ({flag.get('severity')}): {value}, threshold {threshold}{where}")
+        measured = (
+            "" if flag["value"] is None else f": {_number(flag['value'])}, threshold {_number(flag['threshold'])}"
+        )
+        where = f" ({flag['where']})" if flag["where"] else ""
+        lines.append(f"  {flag['severity']} {flag['code']}{measured}{where}: {flag['meaning']}")
     return lines
 
 
@@ -73,19 +72,8 @@ def _files(out: Path) -> list[str]:
     return ["", *(f"  {path!s:<{width}}  {meaning}" for path, meaning in shown)]
 
 
-def flatten(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
-    """Scalars of nested objects with dotted names; lists and empty values are left out."""
-    found: list[tuple[str, Any]] = []
-    for name, value in tree.items():
-        if isinstance(value, dict):
-            found += flatten(value, f"{prefix}{name}.")
-        elif isinstance(value, bool | int | float | str) and value != "":
-            found.append((prefix + name, value))
-    return found
-
-
 def _number(value: Any) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}" if isinstance(value, float) else f"{value:,}" if isinstance(value, int) else str(value)
 
 
 def _read(path: Path) -> dict[str, Any]:

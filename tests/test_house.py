@@ -1,0 +1,132 @@
+"""What holds the whole repository together: documents that agree with files, and house rules."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import yaml
+
+from core.settings import PRESET_NAMES
+
+ROOT = Path(__file__).parents[1]
+MAX_LINES = 400
+TEXT = {".py", ".md", ".toml", ".yml", ".yaml", ".sh", ".ini", ".cfg", ".lock", ".html", ".mako", ""}
+MACHINE_PATHS = re.compile(r"(?<![\w.])/(?:work|root|opt|home/\w+|tmp/\w+)/")
+HOSTS = re.compile(r"https?://[\w.-]*(?:pypi|pythonhosted|debian|npmjs)[\w.-]*", re.IGNORECASE)
+UNFINISHED = re.compile(
+    r"\b(?:TO" + r"DO|FIX" + r"ME|XXX|HACK)\b|\bfor " + r"now\b|\bplace" + r"holder\b", re.IGNORECASE
+)
+CO_AUTHOR = re.compile("co-" + "authored-by", re.IGNORECASE)
+
+
+def tracked() -> list[Path]:
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
+    names = [name for name in listed.stdout.decode().split("\0") if name]
+    if not names:
+        pytest.skip("not a git checkout")
+    return [ROOT / name for name in names if (ROOT / name).is_file()]
+
+
+def texts() -> list[tuple[Path, str]]:
+    return [(path, path.read_text(encoding="utf-8")) for path in tracked() if path.suffix in TEXT]
+
+
+def readme_test_command() -> str:
+    block = re.search(
+        r"<!-- test command -->\n```\w*\n(.*?)\n```\n<!-- end -->", (ROOT / "README.md").read_text(), re.DOTALL
+    )
+    assert block, "README.md marks its test command"
+    return block.group(1)
+
+
+def test_ci_runs_the_command_of_the_readme() -> None:
+    script = (ROOT / ".ci" / "run").read_text()
+    reading = re.search(r"^command=\$\((.*)\)$", script, re.MULTILINE)
+    assert reading, ".ci/run reads its command from README.md"
+    found = subprocess.run(["bash", "-c", reading.group(1)], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == readme_test_command() == "make test"
+    assert 'exec bash -euo pipefail -c "$command"' in script
+    assert "BLADEATLAS_REQUIRE_SERVICES=1" in script
+
+
+@pytest.mark.parametrize("name", [".ci/run", "scripts/setup.sh", "scripts/lock.sh"])
+def test_scripts_can_be_run(name: str) -> None:
+    path = ROOT / name
+    assert path.stat().st_mode & 0o111
+    subprocess.run(["bash", "-n", str(path)], check=True)
+
+
+def test_no_file_is_too_long() -> None:
+    long = {
+        path.name: text.count("\n") for path, text in texts() if path.suffix == ".py" and text.count("\n") > MAX_LINES
+    }
+    assert not long
+
+
+@pytest.mark.parametrize(
+    "pattern", [MACHINE_PATHS, HOSTS, UNFINISHED, CO_AUTHOR], ids=["paths", "hosts", "open", "author"]
+)
+def test_no_file_says(pattern: re.Pattern[str]) -> None:
+    found = [
+        f"{path.relative_to(ROOT)}:{number}: {line.strip()[:80]}"
+        for path, text in texts()
+        for number, line in enumerate(text.splitlines(), 1)
+        if pattern.search(line) and path != Path(__file__) and path.name != "LICENSE"
+    ]
+    assert not found
+
+
+def test_the_patterns_find_what_they_are_for() -> None:
+    assert MACHINE_PATHS.search('open("/work' + '/x")')
+    assert not MACHINE_PATHS.search("lies below docs/work/x")
+    assert UNFINISHED.search("# TO" + "DO later")
+    assert HOSTS.search("https://files.python" + "hosted.org/x")
+
+
+def test_links_of_documents_resolve() -> None:
+    broken = []
+    for path, text in texts():
+        if path.suffix != ".md":
+            continue
+        for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
+            if "://" not in target and not (path.parent / target).exists():
+                broken.append(f"{path.relative_to(ROOT)} -> {target}")
+    assert not broken
+
+
+def test_lock_is_complete_and_plain() -> None:
+    lines = [line for line in (ROOT / "requirements.lock").read_text().splitlines() if not line.startswith("#")]
+    assert all(re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.!_-]+", line) for line in lines)
+    locked = {normal(line.split("==")[0]) for line in lines}
+    assert "torchvision" not in locked
+    assert "setuptools" in locked
+    wanted = re.findall(r'^    "([A-Za-z0-9_-]+)(?:\[\w+\])?[>=]=', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    assert len(wanted) > 30
+    assert not {normal(name) for name in wanted} - locked
+
+
+def normal(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def test_compose_starts_the_service_with_a_health_check() -> None:
+    compose = yaml.safe_load((ROOT / "docker-compose.yml").read_text())
+    assert set(compose["services"]) == {"api"}
+    api = compose["services"]["api"]
+    assert api["healthcheck"]["test"][0] == "CMD"
+    assert "/readyz" in api["healthcheck"]["test"][-1]
+    dockerfile = (ROOT / "Dockerfile").read_text()
+    assert "scripts/setup.sh" in dockerfile
+    for copied in re.findall(r"^COPY (.*) \S+$", dockerfile, re.MULTILINE):
+        assert all((ROOT / name).exists() for name in copied.split())
+
+
+def test_readme_names_every_preset_and_exit_code() -> None:
+    readme = (ROOT / "README.md").read_text()
+    for preset in PRESET_NAMES:
+        assert f"`{preset}`" in readme or f"--preset {preset}" in readme
+    for code in ("0 done", "1 internal error", "2 bad input", "3 no reconstruction", "4 partial", "130 interrupted"):
+        assert code in readme

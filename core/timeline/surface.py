@@ -41,7 +41,8 @@ def sample_points(support: F64) -> F64:
     """At most `MAX_SAMPLES` of the support points, evenly picked in their order."""
     if len(support) <= MAX_SAMPLES:
         return support
-    return support[np.linspace(0, len(support) - 1, MAX_SAMPLES).round().astype(int)]
+    sampled: F64 = support[np.linspace(0, len(support) - 1, MAX_SAMPLES).round().astype(int)]
+    return sampled
 
 
 def mean_normal(normals: F64, vertex_defect: I32, weight: NDArray[np.float32], defect: int) -> F64:

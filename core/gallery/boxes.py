@@ -1,0 +1,168 @@
+"""Boxes drawn on original, uncropped frames, and the choice of frames when there are too many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.rows import DetectionRow
+
+U8 = NDArray[np.uint8]
+RGB = tuple[int, int, int]
+
+PALETTE: tuple[RGB, ...] = (
+    (255, 176, 0),
+    (86, 180, 233),
+    (240, 90, 160),
+    (0, 200, 150),
+    (190, 130, 255),
+    (240, 228, 66),
+    (255, 110, 60),
+    (160, 220, 90),
+)
+"""Colours that stay apart on grey metal and for most kinds of colour blindness; labels take them in order."""
+
+_DASH_PX = 7
+_MAX_LABEL = 28
+
+
+@dataclass(frozen=True)
+class FrameBoxes:
+    """One frame of the video and the detections on it."""
+
+    source_index: int
+    time_s: float
+    rows: tuple[DetectionRow, ...]
+
+    @property
+    def file_name(self) -> str:
+        """Name of its picture."""
+        return f"frame_{self.source_index:06d}.jpg"
+
+    @property
+    def best_score(self) -> float:
+        """Highest score of its detections; 0 where none has one."""
+        return max((row.score or 0.0 for row in self.rows), default=0.0)
+
+
+def group_by_frame(rows: Sequence[DetectionRow], source_index: Mapping[int, int | None]) -> list[FrameBoxes]:
+    """Frames with detections in the order of the video; `source_index` is by detection id, None = no frame."""
+    groups: dict[int, list[DetectionRow]] = {}
+    for row in rows:
+        source = source_index[row.id]
+        if source is not None:
+            groups.setdefault(source, []).append(row)
+    return [FrameBoxes(source, own[0].time_s, tuple(own)) for source, own in sorted(groups.items())]
+
+
+def choose_frames(frames: Sequence[FrameBoxes], limit: int) -> list[FrameBoxes]:
+    """At most `limit` frames, in the order of the video.
+
+    The best-scored frame of every defect and then of every label come first, then all others by their best
+    score; the earlier of two equal frames is taken.
+    """
+    if len(frames) <= limit:
+        return list(frames)
+    ranked = sorted(frames, key=lambda frame: (-frame.best_score, frame.source_index))
+    chosen: dict[int, FrameBoxes] = {}
+    for name in ("defect_id", "label"):
+        best: dict[object, tuple[float, FrameBoxes]] = {}
+        for frame in frames:
+            for row in frame.rows:
+                key, score = getattr(row, name), row.score or 0.0
+                if key is not None and (key not in best or score > best[key][0]):
+                    best[key] = (score, frame)
+        for _, frame in sorted(best.values(), key=lambda entry: -entry[0]):
+            chosen.setdefault(frame.source_index, frame)
+    for frame in ranked:
+        chosen.setdefault(frame.source_index, frame)
+    return sorted(list(chosen.values())[:limit], key=lambda frame: frame.source_index)
+
+
+def label_colors(labels: Sequence[str]) -> dict[str, RGB]:
+    """A colour for each label, by alphabet."""
+    return {label: PALETTE[i % len(PALETTE)] for i, label in enumerate(sorted(set(labels)))}
+
+
+def draw_boxes(rgb: U8, rows: Sequence[DetectionRow], colors: Mapping[str, RGB]) -> U8:
+    """A copy of the frame with its boxes: solid where the detection is mapped, dashed where it is not.
+
+    Args:
+        rgb: (h, w, 3) uncropped frame.
+        rows: boxes normalised on this frame.
+        colors: by label.
+    """
+    picture = np.ascontiguousarray(rgb).copy()
+    height, width = picture.shape[:2]
+    thickness = max(2, round(width / 480))
+    for row in rows:
+        left, top = int(row.box_x1 * width), int(row.box_y1 * height)
+        right, bottom = int(row.box_x2 * width), int(row.box_y2 * height)
+        color = colors[row.label]
+        if row.outcome == "mapped":
+            cv2.rectangle(picture, (left, top), (right, bottom), color, thickness, cv2.LINE_AA)
+        else:
+            _dashed_rectangle(picture, (left, top, right, bottom), color, max(1, thickness - 1))
+        _tag(picture, _tag_text(row), (left, top), color)
+    return picture
+
+
+def _tag_text(row: DetectionRow) -> str:
+    label = row.label if len(row.label) <= _MAX_LABEL else row.label[: _MAX_LABEL - 1] + "~"
+    score = f" {row.score:.2f}" if row.score is not None else ""
+    place = f"D{row.defect_id} " if row.defect_id is not None else ""
+    # OpenCV's font knows printable ASCII only.
+    return "".join(c if 32 <= ord(c) < 127 else "?" for c in f"{place}{label}{score}")
+
+
+def _dashed_rectangle(picture: U8, box: tuple[int, int, int, int], color: RGB, thickness: int) -> None:
+    left, top, right, bottom = box
+    for y in (top, bottom):
+        for x in range(left, right, 2 * _DASH_PX):
+            cv2.line(picture, (x, y), (min(x + _DASH_PX, right), y), color, thickness)
+    for x in (left, right):
+        for y in range(top, bottom, 2 * _DASH_PX):
+            cv2.line(picture, (x, y), (x, min(y + _DASH_PX, bottom)), color, thickness)
+
+
+def _tag(picture: U8, text: str, corner: tuple[int, int], color: RGB) -> None:
+    """Dark text on a plate of the label's colour, above the corner or inside the picture's rim."""
+    height, width = picture.shape[:2]
+    scale = max(0.4, width / 2000)
+    (wide, high), base = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
+    x = int(np.clip(corner[0], 0, max(0, width - wide - 6)))
+    y = corner[1] - 3 if corner[1] - high - base - 4 >= 0 else corner[1] + high + base + 4
+    y = int(np.clip(y, high + base + 2, height - 2))
+    cv2.rectangle(picture, (x, y - high - base - 1), (x + wide + 6, y + 1), color, cv2.FILLED)
+    cv2.putText(picture, text, (x + 3, y - base + 1), cv2.FONT_HERSHEY_SIMPLEX, scale, (20, 22, 24), 1, cv2.LINE_AA)
+
+
+def draw_defect_numbers(rgb: U8, defect: NDArray[np.int32]) -> U8:
+    """A copy of a rendering with a numbered mark beside every defect seen in it.
+
+    Args:
+        rgb: (h, w, 3)
+        defect: (h, w) defect number of each pixel, -1 none.
+    """
+    picture = np.ascontiguousarray(rgb).copy()
+    height, width = defect.shape
+    scale = max(0.35, width / 2200)
+    for number in np.unique(defect[defect >= 0]):
+        rows, columns = np.nonzero(defect == number)
+        x, y = int(np.median(columns)), int(np.median(rows))
+        text = f"D{number}"
+        (wide, high), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
+        reach = round(0.03 * width)
+        tag_x = int(np.clip(x + reach, 4, width - wide - 12))
+        tag_y = int(np.clip(y - reach, high + 12, height - 8))
+        cv2.line(picture, (x, y), (tag_x, tag_y), (40, 44, 48), 1, cv2.LINE_AA)
+        plate = ((tag_x - 4, tag_y - high - 6), (tag_x + wide + 6, tag_y + 6))
+        cv2.rectangle(picture, *plate, (255, 255, 255), cv2.FILLED)
+        cv2.rectangle(picture, *plate, (40, 44, 48), 1)
+        at = (tag_x + 1, tag_y)
+        cv2.putText(picture, text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, (150, 0, 0), 1, cv2.LINE_AA)
+    return picture

@@ -1,0 +1,178 @@
+"""The gallery page: both views of the surface, the table of events, and the frames with their boxes.
+
+Labels and keys come from the annotation file and are not trusted: whatever enters the page passes through
+`_e`, and the page's own policy forbids any script but its own.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import Any
+
+from core.gallery.assets import SCRIPT, STYLE
+from core.gallery.boxes import RGB, FrameBoxes
+from core.mapping.rows import REASONS, DetectionRow
+
+OUTCOMES = ("mapped", "approximate", "unplaced")
+
+
+def _e(value: object) -> str:
+    """Text for HTML content and double-quoted attributes."""
+    return escape(str(value), quote=True)
+
+
+def gallery_page(
+    frames: Sequence[FrameBoxes],
+    n_frames: int,
+    rows: Sequence[DetectionRow],
+    events: Sequence[Mapping[str, Any]],
+    colors: Mapping[str, RGB],
+) -> str:
+    """The whole page as one string.
+
+    Args:
+        frames: those with a picture beside the page.
+        n_frames: frames with detections, shown or not.
+        rows: all detections.
+        events: rows of the timeline.
+        colors: by label, as drawn in the pictures.
+    """
+    mapped = sum(row.outcome == "mapped" for row in rows)
+    lead = f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {len(events)} defects"
+    return "\n".join(
+        [
+            "<!doctype html>",
+            '<html lang="en">',
+            _head(),
+            "<body>",
+            f'<header><h1>Inspection gallery</h1><p class="lead">{_e(lead)}</p></header>',
+            "<main>",
+            _views(),
+            _events(events, frames),
+            _gallery(frames, n_frames, rows, colors),
+            "</main>",
+            f"<footer><p>{_e(_without_frame(rows))}</p></footer>",
+            '<dialog aria-label="Frame"><img alt=""><p></p></dialog>',
+            f"<script>{SCRIPT}</script>",
+            "</body>",
+            "</html>",
+            "",
+        ]
+    )
+
+
+def _head() -> str:
+    digest = base64.b64encode(hashlib.sha256(SCRIPT.encode()).digest()).decode()
+    policy = f"default-src 'none'; img-src 'self' file:; style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
+    return (
+        '<head><meta charset="utf-8">'
+        f'<meta http-equiv="Content-Security-Policy" content="{_e(policy)}">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>Inspection gallery</title><style>{STYLE}</style></head>"
+    )
+
+
+def _views() -> str:
+    alt = "The reconstructed surface from side {n}; defects are red and numbered as in the table"
+    pictures = "".join(
+        f'<a href="mesh_{n}.png"><img src="mesh_{n}.png" alt="{_e(alt.format(n=n))}" width="1600" height="1200"></a>'
+        for n in (1, 2)
+    )
+    return f'<section aria-labelledby="s"><h2 id="s">Surface</h2><div class="views">{pictures}</div></section>'
+
+
+def _events(events: Sequence[Mapping[str, Any]], frames: Sequence[FrameBoxes]) -> str:
+    if not events:
+        body = "<p>No defect was placed on the surface.</p>"
+    else:
+        columns = "<th>Detections</th><th>Frames</th><th>Position (model units)</th><th>Radius</th>"
+        head = f'<tr><th class="t">Defect</th><th class="t">Label</th><th>From</th><th>To</th>{columns}'
+        head += '<th class="t">Best frame</th></tr>'
+        table = "".join(_event_row(event, frames) for event in events)
+        body = f'<div class="scroll"><table><thead>{head}</thead><tbody>{table}</tbody></table></div>'
+    return f'<section aria-labelledby="e"><h2 id="e">Defects on the surface</h2>{body}</section>'
+
+
+def _event_row(event: Mapping[str, Any], frames: Sequence[FrameBoxes]) -> str:
+    number = int(event["defect_id"])
+    place = ", ".join(f"{event[axis]:.3f}" for axis in "xyz")
+    candidates = [(row.score or 0.0, frame) for frame in frames for row in frame.rows if row.defect_id == number]
+    best = max(candidates, key=lambda item: item[0], default=None)
+    link = f'<a href="{_e(best[1].file_name)}">{best[1].time_s:.2f} s</a>' if best else ""
+    return (
+        f'<tr><td class="t"><button type="button" data-defect="{number}" aria-pressed="false">D{number}</button></td>'
+        f'<td class="t">{_e(event["label"])}</td><td>{event["start_s"]:.2f} s</td><td>{event["end_s"]:.2f} s</td>'
+        f"<td>{int(event['n_detections'])}</td><td>{int(event['n_frames'])}</td><td>{_e(place)}</td>"
+        f'<td>{event["radius"]:.3f}</td><td class="t">{link}</td></tr>'
+    )
+
+
+def _gallery(
+    frames: Sequence[FrameBoxes], n_frames: int, rows: Sequence[DetectionRow], colors: Mapping[str, RGB]
+) -> str:
+    note = ""
+    if len(frames) < n_frames:
+        note = (
+            f"<p>{len(frames)} of {n_frames} frames are shown: the best-scored frame of every defect and of every "
+            "label, then the others by their best score.</p>"
+        )
+    elif not frames:
+        note = "<p>The annotations hold no detection inside the video.</p>"
+    figures = "".join(_figure(frame, colors) for frame in frames)
+    return (
+        '<section aria-labelledby="f"><h2 id="f">Frames</h2>'
+        f'{note}{_filters(rows)}<div class="grid">{figures}</div></section>'
+    )
+
+
+def _filters(rows: Sequence[DetectionRow]) -> str:
+    defects = sorted({row.defect_id for row in rows if row.defect_id is not None})
+    present = [outcome for outcome in OUTCOMES if any(row.outcome == outcome for row in rows)]
+    fields = (
+        ("label", "Label", [(label, label) for label in sorted({row.label for row in rows})]),
+        ("outcome", "Outcome", [(outcome, outcome) for outcome in present]),
+        ("defect", "Defect", [(str(number), f"D{number}") for number in defects]),
+    )
+    selects = "".join(
+        f'<label>{name}<select id="{key}"><option value="">all</option>'
+        + "".join(f'<option value="{_e(value)}">{_e(text)}</option>' for value, text in options)
+        + "</select></label>"
+        for key, name, options in fields
+    )
+    reset = '<button type="button" id="reset">Show all</button>'
+    return f'<form class="filters">{selects}{reset}<output id="shown" aria-live="polite"></output></form>'
+
+
+def _figure(frame: FrameBoxes, colors: Mapping[str, RGB]) -> str:
+    labels = ", ".join(sorted({row.label for row in frame.rows}))
+    alt = f"Frame {frame.source_index} at {frame.time_s:.2f} s: {labels}"
+    items = "".join(_item(row, colors[row.label]) for row in frame.rows)
+    name = _e(frame.file_name)
+    return (
+        f'<figure data-frame="{frame.source_index}"><a class="picture" href="{name}">'
+        f'<img src="{name}" alt="{_e(alt)}" loading="lazy"></a>'
+        f"<figcaption><strong>{frame.time_s:.2f} s</strong> frame {frame.source_index}<ul>{items}</ul></figcaption>"
+        "</figure>"
+    )
+
+
+def _item(row: DetectionRow, color: RGB) -> str:
+    defect = "" if row.defect_id is None else str(row.defect_id)
+    score = f" {row.score:.2f}" if row.score is not None else ""
+    state = f"D{defect}" if defect else (row.reason or row.outcome).replace("_", " ")
+    hint = REASONS.get(row.reason or "", f"{row.support_points} support points")
+    swatch = f'<span class="dot" style="background:rgb({color[0]},{color[1]},{color[2]})"></span>'
+    return (
+        f'<li data-label="{_e(row.label)}" data-outcome="{_e(row.outcome)}" data-defect="{_e(defect)}">{swatch}'
+        f"<span>{_e(row.label)}{score}</span>"
+        f'<span class="state {_e(row.outcome)}" title="{_e(hint)}">{_e(state)}</span></li>'
+    )
+
+
+def _without_frame(rows: Sequence[DetectionRow]) -> str:
+    outside = sum(row.reason == "no_frame" for row in rows)
+    legend = "Solid boxes are on the surface, dashed boxes are not."
+    return f"{legend} {outside} detections lie outside the video and have no frame." if outside else legend

@@ -133,6 +133,7 @@ def accept(session: Session, task: Task, result: Result, now: datetime, *, reuse
     task.seconds, task.peak_rss_bytes = result.seconds, result.peak_rss_bytes
     task.lease_owner, task.lease_expires_at, task.ended_at = None, None, now
     rows = dict(result.rows)
+    rows["metrics"] = [{**row, "name": f"{task.key}.{row['name']}"} for row in rows.get("metrics", ())]
     rows["cases"] = [{"seconds": result.seconds, "selected": 0, **row} for row in rows.get("cases", ())]
     write_rows(session, task.inspection_id, task.key, rows)
 

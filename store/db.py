@@ -15,9 +15,11 @@ from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import make_url
+from sqlalchemy.exc import DatabaseError, OperationalError
 from sqlalchemy.orm import Session
 
 import migrations
+from core.errors import BadInput, DiskFull
 
 _BUSY_MS = 30_000
 
@@ -71,8 +73,13 @@ class Database:
     @contextmanager
     def write(self) -> Iterator[Session]:
         """A transaction that commits when the block ends well and rolls back otherwise."""
-        with Session(self._writer, expire_on_commit=False) as session, session.begin():
-            yield session
+        try:
+            with Session(self._writer, expire_on_commit=False) as session, session.begin():
+                yield session
+        except OperationalError as error:
+            if self.is_sqlite and _is_full(error):
+                raise DiskFull("the plan cannot be written: no space left on its disk", where="plan") from error
+            raise
 
     def now(self, session: Session) -> datetime:
         """The time that leases are measured with: the server's, so that machines need not agree."""
@@ -86,6 +93,11 @@ class Database:
         self.engine.dispose()
 
 
+def _is_full(error: OperationalError) -> bool:
+    """True for what SQLite says when its disk takes no more."""
+    return any(words in str(error.orig) for words in ("disk is full", "disk I/O error", "readonly database"))
+
+
 def alembic_config(url: str) -> Config:
     """Alembic's configuration, without a file."""
     config = Config()
@@ -94,27 +106,40 @@ def alembic_config(url: str) -> Config:
     return config
 
 
-def revisions(url: str) -> tuple[str | None, str | None]:
-    """(revision of the database, newest revision)."""
+def upgrade(url: str) -> None:
+    """Bring the tables to the newest revision; does nothing when they are.
+
+    Raises:
+        BadInput: the tables are of a newer version of this program.
+    """
     engine = make_engine(url)
     try:
         with engine.connect() as connection:
             current = MigrationContext.configure(connection).get_current_revision()
     finally:
         engine.dispose()
-    return current, ScriptDirectory.from_config(alembic_config(url)).get_current_head()
-
-
-def upgrade(url: str) -> None:
-    """Bring the tables to the newest revision; does nothing when they are."""
-    current, head = revisions(url)
-    if current != head:
+    script = ScriptDirectory.from_config(alembic_config(url))
+    known = {revision.revision for revision in script.walk_revisions()}
+    if current is not None and current not in known:
+        raise BadInput("the database was written by a newer version of bladeatlas", code="newer_database", where="plan")
+    if current != script.get_current_head():
         command.upgrade(alembic_config(url), "head")
 
 
 def open_sqlite(path: Path) -> Database:
-    """Open the SQLite file at `path`, made and upgraded when needed, one process at a time."""
+    """Open the SQLite file at `path`, made and upgraded when needed, one process at a time.
+
+    Raises:
+        DiskFull: there is no space for it.
+        BadInput: it is damaged, or of a newer version of this program.
+    """
     with path.with_name(path.name + ".lock").open("w") as guard:
         fcntl.flock(guard, fcntl.LOCK_EX)
-        upgrade(sqlite_url(path))
+        try:
+            upgrade(sqlite_url(path))
+        except DatabaseError as error:
+            if isinstance(error, OperationalError) and _is_full(error):
+                raise DiskFull("the plan cannot be written: no space left on its disk", where="plan") from error
+            message = f"'{path}' is damaged; without it, finished results are found again by their files"
+            raise BadInput(message, code="damaged_plan", where="plan") from error
     return Database(sqlite_url(path))

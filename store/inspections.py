@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from sqlalchemy import delete, select
 
@@ -17,7 +18,7 @@ from store.leasing import input_files, lock_inspection, put_result
 from store.models import Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, InspectionView, Result, TaskView
-from store.rows import clear_rows
+from store.rows import clear_rows, replace_rows
 
 
 def input_digest(files: InputFiles) -> str:
@@ -107,15 +108,21 @@ class Inspections:
             )
             return [_task_view(task, path) for task, path in session.execute(query)]
 
-    def dependents(self, inspection_id: str, stage: str) -> list[str]:
-        """Fingerprints of the tasks of `stage` and of all that depend on them, in the plan as it stands."""
+    def stages_from(self, inspection_id: str, stage: str) -> set[str]:
+        """`stage` and the stages of all tasks that depend on it, directly or not, in the plan as it stands."""
         keys: set[str] = set()
-        names = []
+        stages = {stage}
         for task in self.tasks(inspection_id):
             if task.stage == stage or keys.intersection(task.depends):
                 keys.add(task.key)
-                names.append(task.fingerprint)
-        return [name for name in names if name]
+                stages.add(task.stage)
+        return stages
+
+    def put_rows(self, inspection_id: str, rows: Mapping[str, Any]) -> None:
+        """Replace the rows of cases, detections, events and defects by those of the final report."""
+        with self.db.write() as session:
+            lock_inspection(session, inspection_id)
+            replace_rows(session, inspection_id, rows)
 
     def known_results(self) -> dict[str, str]:
         """Path of every known result by fingerprint."""

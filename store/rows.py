@@ -32,6 +32,13 @@ def write_rows(session: Session, inspection_id: str, task_key: str, rows: Mappin
             _insert(session, table, inspection_id, task_key, rows[name])
 
 
+def replace_rows(session: Session, inspection_id: str, rows: Mapping[str, Any]) -> None:
+    """Replace whole tables of an inspection: those that `rows` names."""
+    for name, values in rows.items():
+        _clear(session, _TABLES[name], inspection_id, None)
+        _insert(session, _TABLES[name], inspection_id, "", values)
+
+
 def clear_rows(session: Session, inspection_id: str) -> None:
     """Remove every row of an inspection."""
     for table in _TABLES.values():

@@ -1,0 +1,60 @@
+"""Which file of which stage is published under which name: the contract of OUTPUTS as one table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from core.stage import Facts
+
+BEST_CASE = "{best}"
+"""Stands for the task of the case that the search chose."""
+
+
+@dataclass(frozen=True)
+class Output:
+    """One published file or folder."""
+
+    path: str
+    """Relative to the output folder."""
+    sources: tuple[tuple[str, str], ...]
+    """(task key, path in its result), best first: the first whose task has a result is published."""
+    folder: bool = False
+    """Every file below the source is published below `path`."""
+    needs_trust: bool = False
+    """Says where defects are, so it is not published when the model was refused."""
+
+
+OUTPUTS: tuple[Output, ...] = (
+    Output("sparse", (("extend", "model"), ("confirm", "model"), (BEST_CASE, "model")), folder=True),
+    Output("dense/fused.ply", (("fuse", "fused.ply"),)),
+    Output("dense/mesh_poisson.ply", (("mesh", "mesh_poisson.ply"),)),
+    Output("dense/mesh_full.ply", (("mesh", "mesh_full.ply"),)),
+    Output("mapping/mesh_defects.ply", (("timeline", "mesh_defects.ply"),), needs_trust=True),
+    Output("mapping/mesh_defects.glb", (("timeline", "mesh_defects.glb"),), needs_trust=True),
+    Output("mapping/defect_points.ply", (("map_defects", "defect_points.ply"),), needs_trust=True),
+    Output("gallery", (("gallery", ""),), folder=True),
+)
+
+TABLES: tuple[str, ...] = (
+    "frames.csv",
+    "cases.csv",
+    "cases.json",
+    "mapping/detections.csv",
+    "mapping/detections.json",
+    "mapping/timeline.csv",
+    "mapping/timeline.json",
+    "mapping/defects.json",
+    "quality.json",
+    "summary.json",
+)
+"""Written for every run that ended, whatever it reached; summary.json last, so its presence says: complete."""
+
+
+def best_case(facts: Mapping[str, Facts]) -> str:
+    """Task key of the case that the search chose; empty before the first reducer."""
+    for reducer in ("reduce_refine", "reduce_coarse"):
+        found = facts.get(reducer, {})
+        if found.get("best"):
+            return f"{found.get('kind', 'coarse')}/{found['best']}"
+    return ""

@@ -1,0 +1,90 @@
+"""The folder of a local run: `.bladeatlas/` inside it, one run at a time, one input unless forced."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+from core.errors import BadInput, BladeAtlasError, DiskFull
+from core.outputs import OUTPUTS, TABLES
+
+HIDDEN = ".bladeatlas"
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """Where things lie in the output folder of a local run."""
+
+    out: Path
+
+    @property
+    def hidden(self) -> Path:
+        """This program's own folder."""
+        return self.out / HIDDEN
+
+    @property
+    def database(self) -> Path:
+        """The plan."""
+        return self.hidden / "plan.db"
+
+    @property
+    def results(self) -> Path:
+        """Results by stage and fingerprint."""
+        return self.hidden / "results"
+
+    @property
+    def logs(self) -> Path:
+        """One log per task."""
+        return self.hidden / "logs"
+
+    def foreign_files(self) -> list[str]:
+        """Names of the contract that are taken by files this program did not put there."""
+        if self.database.exists():
+            return []
+        names = (*TABLES, *(output.path for output in OUTPUTS))
+        return [name for name in names if (self.out / name).exists()]
+
+
+@contextmanager
+def locked(out: Path) -> Iterator[RunFolder]:
+    """The folder, made when needed and held against other runs.
+
+    Raises:
+        BadInput: it is no folder, may not be written, or another run uses it.
+        DiskFull: the disk has no space for it.
+    """
+    folder = RunFolder(out)
+    try:
+        folder.hidden.mkdir(parents=True, exist_ok=True)
+        stream = (folder.hidden / "lock").open("a+")
+        stream.write(" ")
+        stream.flush()
+    except OSError as error:
+        raise _cannot_write(out, error) from None
+    with stream:
+        _take(stream, out)
+        # Truncated only under the lock; the write above proved that the disk takes data.
+        stream.truncate(0)
+        stream.write(str(os.getpid()))
+        stream.flush()
+        yield folder
+
+
+def _take(stream: IO[str], out: Path) -> None:
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise BadInput(f"another run is working in '{out}'", code="folder_in_use", where="--out") from None
+
+
+def _cannot_write(out: Path, error: OSError) -> BladeAtlasError:
+    reason = os.strerror(error.errno or 0).lower()
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return DiskFull(f"the output folder '{out}' cannot be written: {reason}", where="--out")
+    return BadInput(f"the output folder '{out}' cannot be written: {reason}", code="unwritable_output", where="--out")

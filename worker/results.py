@@ -1,0 +1,159 @@
+"""Result folders: `<root>/<stage>/<fingerprint>/`, there whole or not at all.
+
+A stage writes into a temporary folder beside the final one. Sealing hashes and syncs its files and writes
+the manifest `result.json`; one rename makes it a result. What a crash leaves is a temporary folder, which
+the next start sweeps, or a result without a row in the database, which it adopts.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core.errors import DiskFull
+from core.fingerprint import canonical_json, digest_of, digest_of_file
+from core.stage import Facts
+from store.artifacts import sync_folder
+
+MANIFEST = "result.json"
+_TEMP = ".tmp-"
+_MIN_FREE_BYTES = 1 << 20
+"""Native writers drop what does not fit without a word: a disk with less left than this has no whole result."""
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What `result.json` says."""
+
+    fingerprint: str
+    stage: str
+    version: int
+    facts: Facts
+    files: dict[str, dict[str, Any]]
+    """``{"size": bytes, "sha256": hex}`` by relative path."""
+    digest: str
+    """SHA-256 of facts and file hashes: what later fingerprints are made from."""
+    seconds: float
+    """How long the stage took; not part of the digest."""
+    peak_rss_bytes: int
+    key: str
+    """Task that computed it first."""
+
+
+def seal(folder: Path, *, fingerprint: str, key: str, version: int, facts: Facts, seconds: float, rss: int) -> Manifest:
+    """Hash and sync everything a stage wrote and put the manifest beside it.
+
+    Raises:
+        DiskFull: so little space is left that native writers may have lost data unseen.
+        ValueError: facts are not finite JSON.
+    """
+    canonical_json(facts)
+    files: dict[str, dict[str, Any]] = {}
+    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+        _sync_file(path)
+        name = path.relative_to(folder).as_posix()
+        files[name] = {"size": path.stat().st_size, "sha256": digest_of_file(path)}
+    if disk_is_full(folder):
+        raise DiskFull("no space left on the disk of the output folder", where=key)
+    digest = digest_of({"facts": facts, "files": {name: entry["sha256"] for name, entry in files.items()}})
+    manifest = Manifest(fingerprint, key.split("/", 1)[0], version, facts, files, digest, seconds, rss, key)
+    path = folder / MANIFEST
+    path.write_text(json.dumps(manifest.__dict__, sort_keys=True, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    _sync_file(path)
+    for inner in (*(p for p in folder.rglob("*") if p.is_dir()), folder):
+        sync_folder(inner)
+    return manifest
+
+
+def disk_is_full(folder: Path) -> bool:
+    """True when what a stage wrote into this folder may not all have reached the disk."""
+    return shutil.disk_usage(folder).free < _MIN_FREE_BYTES
+
+
+def _sync_file(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+class ResultFolders:
+    """All result folders below one root."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        root.mkdir(parents=True, exist_ok=True)
+
+    def relative(self, stage: str, fingerprint: str) -> str:
+        """Path of a result below the root, as the database keeps it."""
+        return f"{stage}/{fingerprint}"
+
+    def path(self, relative: str | os.PathLike[str]) -> Path:
+        """Absolute folder of a result."""
+        return self.root / relative
+
+    def begin(self, stage: str, fingerprint: str) -> Path:
+        """A new empty temporary folder for one attempt."""
+        folder = self.root / stage / f"{_TEMP}{fingerprint[:16]}-{uuid.uuid4().hex[:12]}"
+        folder.mkdir(parents=True)
+        return folder
+
+    def commit(self, temporary: Path, stage: str, fingerprint: str) -> Manifest:
+        """Turn a sealed temporary folder into the result; the first of two equal results stays."""
+        final = self.root / stage / fingerprint
+        if self.find(stage, fingerprint) is None:
+            self._remove(final)
+            temporary.rename(final)
+            sync_folder(final.parent)
+        self.discard(temporary)
+        manifest = self.find(stage, fingerprint)
+        if manifest is None:
+            raise DiskFull(f"the result of {stage} could not be kept", where=stage)
+        return manifest
+
+    def discard(self, temporary: Path) -> None:
+        """Remove a temporary folder; nothing happens when it is gone."""
+        shutil.rmtree(temporary, ignore_errors=True)
+
+    def find(self, stage: str, fingerprint: str) -> Manifest | None:
+        """The manifest of a result whose files are all there in full size; else None."""
+        folder = self.root / stage / fingerprint
+        try:
+            manifest = Manifest(**json.loads((folder / MANIFEST).read_text(encoding="utf-8")))
+            whole = all((folder / name).stat().st_size == entry["size"] for name, entry in manifest.files.items())
+        except (OSError, ValueError, TypeError, KeyError):
+            return None
+        return manifest if whole and manifest.fingerprint == fingerprint else None
+
+    def all(self) -> Iterator[Manifest]:
+        """Every usable result on disk."""
+        for path in sorted(self.root.glob(f"*/*/{MANIFEST}")):
+            if not path.parent.name.startswith(_TEMP):
+                manifest = self.find(path.parent.parent.name, path.parent.name)
+                if manifest is not None:
+                    yield manifest
+
+    def sweep(self) -> int:
+        """Remove temporary folders; only while nobody else works below this root. Returns how many."""
+        stale = list(self.root.glob(f"*/{_TEMP}*"))
+        for folder in stale:
+            shutil.rmtree(folder, ignore_errors=True)
+        return len(stale)
+
+    def remove(self, stage: str, fingerprint: str) -> None:
+        """Remove a result."""
+        self._remove(self.root / stage / fingerprint)
+
+    def _remove(self, folder: Path) -> None:
+        # Renamed first: a crash in the middle leaves a temporary folder, never half a result.
+        if folder.exists():
+            doomed = folder.with_name(f"{_TEMP}gone-{uuid.uuid4().hex[:12]}")
+            folder.rename(doomed)
+            shutil.rmtree(doomed, ignore_errors=True)

@@ -1,0 +1,46 @@
+"""Table rows of a result, read from the very files that it seals."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from core.stage import Facts
+
+_CASE_STAGES = ("coarse", "refine")
+_TABLE_FILES: dict[str, dict[str, str]] = {
+    "map_defects": {"detections": "detections.json"},
+    "timeline": {"detections": "detections.json", "events": "timeline.json", "defects": "defects.json"},
+}
+
+
+def rows_of(stage: str, facts: Facts, folder: Path) -> dict[str, Any]:
+    """Rows by table: metrics of every stage, cases of the search, tables of the mapping stages."""
+    rows: dict[str, Any] = {"metrics": _metrics(facts)}
+    if stage in _CASE_STAGES and "name" in facts:
+        rows["cases"] = [facts]
+    for table, name in _TABLE_FILES.get(stage, {}).items():
+        path = folder / name
+        if path.is_file():
+            rows[table] = json.loads(path.read_text(encoding="utf-8"))
+    if "defects" in rows:
+        rows["defects"] = defect_rows(rows["defects"])
+    return rows
+
+
+def defect_rows(records: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of the table of defects: the whole record, and what is asked for most as columns."""
+    rows = []
+    for record in records:
+        x, y, z = record.get("centroid") or (None, None, None)
+        rows.append({"id": record["id"], "label": record["label"], "x": x, "y": y, "z": z, "record": record})
+    return rows
+
+
+def _metrics(facts: Facts) -> list[dict[str, Any]]:
+    numbers = {
+        name: value for name, value in facts.items() if isinstance(value, int | float) and not isinstance(value, bool)
+    }
+    return [{"name": name, "value": float(value)} for name, value in numbers.items() if math.isfinite(value)]

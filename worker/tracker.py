@@ -1,0 +1,110 @@
+"""How far a run is and how long it will take: from the plan's rows and what tasks took so far."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from store.graph import Graph
+from store.models import OVER_TASK
+from store.records import TaskView
+from worker.outcome import Event, EventKind
+
+
+class Tracker:
+    """Turns changes of the plan into events; calls come one at a time."""
+
+    def __init__(self, graph: Graph, workers: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self._graph = graph
+        self._workers = workers
+        self._clock = clock
+        self._started = clock()
+        self._tasks: dict[str, TaskView] = {}
+        self._running: dict[str, float] = {}
+        self._fraction = 0.0
+        self._at_start: float | None = None
+
+    def refresh(self, tasks: Sequence[TaskView]) -> list[Event]:
+        """Take in the plan as it stands; events of the tasks that ended since the last time."""
+        before, self._tasks = self._tasks, {task.key: task for task in tasks}
+        ended = [t for t in tasks if t.state in OVER_TASK and (t.key not in before or before[t.key].state != t.state)]
+        for task in ended:
+            self._running.pop(task.key, None)
+        if self._at_start is None:
+            self._at_start = self._share()
+        return [self._ended(task) for task in ended]
+
+    def _ended(self, task: TaskView) -> Event:
+        message = str((task.error or {}).get("message", ""))
+        event = self.event("ended", task.key, message)
+        return replace(event, state=task.state, seconds=task.seconds, reused=task.reused)
+
+    def running(self, key: str, progress: float) -> None:
+        """Note how far a running task is."""
+        self._running[key] = progress
+
+    def idle(self, key: str) -> None:
+        """Note that a task stopped without ending."""
+        self._running.pop(key, None)
+
+    def event(self, kind: EventKind, key: str = "", message: str = "", state: str = "") -> Event:
+        """An event of this moment; its fraction never falls."""
+        stage = key.split("/", 1)[0]
+        own = [task for task in self._tasks.values() if task.stage == stage]
+        done = sum(task.state in OVER_TASK for task in own)
+        self._fraction = max(self._fraction, min(1.0, self._share()))
+        return Event(
+            kind=kind,
+            fraction=1.0 if kind == "finished" and state == "succeeded" else self._fraction,
+            eta_s=self._eta(),
+            stage=stage,
+            key=key,
+            state=state,
+            done=done,
+            total=len(own),
+            stage_fraction=self._stage_share(stage) if own else 0.0,
+            message=message,
+        )
+
+    def _stage_share(self, stage: str) -> float:
+        own = [task for task in self._tasks.values() if task.stage == stage]
+        done = sum(1.0 if task.state in OVER_TASK else self._running.get(task.key, 0.0) for task in own)
+        return done / len(own) if own else 0.0
+
+    def _weights(self) -> dict[str, float]:
+        """Weight of every stage that this run has; one that was passed by without tasks has none."""
+        present = {task.stage for task in self._tasks.values()}
+        names = list(self._graph.stages)
+        reached = max((names.index(stage) for stage in present), default=-1)
+        return {
+            name: self._graph.stages[name].weight
+            for position, name in enumerate(names)
+            if name in present or position > reached
+        }
+
+    def _share(self) -> float:
+        weights = self._weights()
+        total = sum(weights.values())
+        return sum(weight * self._stage_share(stage) for stage, weight in weights.items()) / total if total else 0.0
+
+    def _eta(self) -> float | None:
+        """Seconds left: known tasks at the mean of their stage, the rest at what a unit of weight took so far."""
+        took: dict[str, list[float]] = {}
+        for task in self._tasks.values():
+            if task.state == "succeeded" and task.seconds is not None:
+                took.setdefault(task.stage, []).append(task.seconds)
+        weights = self._weights()
+        done_weight = sum(weights[stage] * self._stage_share(stage) for stage in took)
+        if done_weight <= 0:
+            return None
+        second_per_weight = sum(sum(seconds) for seconds in took.values()) / done_weight
+        left = 0.0
+        for stage, weight in weights.items():
+            own = [task for task in self._tasks.values() if task.stage == stage]
+            rest = len(own) * (1 - self._stage_share(stage))
+            side_by_side = self._workers if self._graph.stages[stage].fan_out else 1
+            mean = sum(took[stage]) / len(took[stage]) if stage in took else None
+            seconds = rest * mean if mean is not None else weight * (1 - self._stage_share(stage)) * second_per_weight
+            left += seconds / side_by_side
+        return round(left, 1)

@@ -14,6 +14,7 @@ from core.errors import BadInput
 _SECONDS = re.compile(r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(e[+-]?[0-9]{1,2})?", re.IGNORECASE)
 _CLOCK = re.compile(r"([0-9]{1,4}):([0-5][0-9]):([0-5][0-9](\.[0-9]*)?)")
 _MAX_KEY = 40
+_MAX_SHOWN = 60
 _EDGE = 1e-6
 """Rounding of a detector at the frame's edge; such coordinates are moved onto it."""
 
@@ -24,12 +25,18 @@ def invalid(path: str, what: str, code: str = "annotations_invalid") -> BadInput
 
 
 def shown(value: Any) -> str:
-    """A value for a message: its JSON, cut short."""
+    """A value for a message: short JSON, or only what kind of value it is."""
+    if isinstance(value, dict):
+        return "an object"
+    if isinstance(value, list) and not (len(value) <= 4 and all(isinstance(item, int | float) for item in value)):
+        return "a list"
+    if isinstance(value, str):
+        return json.dumps(value if len(value) <= _MAX_SHOWN else value[:_MAX_SHOWN] + "...")
     try:
         text = json.dumps(value)
     except (TypeError, ValueError):
-        text = type(value).__name__
-    return text if len(text) <= 60 else text[:57] + "..."
+        return f"a value of type {type(value).__name__}"
+    return text if len(text) <= 2 * _MAX_SHOWN else text[: 2 * _MAX_SHOWN] + "..."
 
 
 def parse_time(key: str) -> Fraction:

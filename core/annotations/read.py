@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from core.annotations.checks import shown
 from core.errors import BadInput
 from core.files import require_file
 
@@ -73,9 +74,9 @@ def _object(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
         for key, _ in pairs:
             if key in seen:
                 raise BadInput(
-                    f"key {json.dumps(key)[:80]} occurs twice in one object of the annotations",
+                    f"key {shown(key)} occurs twice in one object of the annotations",
                     code="duplicate_key",
-                    where=json.dumps(key)[:80],
+                    where=shown(key),
                 )
             seen.add(key)
     return values

@@ -18,6 +18,7 @@ import av
 import numpy as np
 from av.sidedata.sidedata import Type as SideDataType
 from av.stream import Disposition
+from av.video.frame import PictureType
 from numpy.typing import NDArray
 
 from core.errors import BadInput
@@ -119,16 +120,8 @@ class VideoReader:
 
     def frames(self) -> Iterator[DecodedFrame]:
         """Frames in presentation order; damage is noted in `damage` and its frames are left out."""
-        index, previous, shape = 0, None, None
-        waiting = False
-        for frame in self._decode():
-            if frame is None or frame.is_corrupt:
-                self._note("frames that do not decode" if index else "")
-                waiting = True
-                continue
-            if waiting and not frame.key_frame:
-                continue
-            waiting = False
+        previous, shape = None, None
+        for index, frame in enumerate(self._sound()):
             if shape is None:
                 shape = (frame.width, frame.height)
                 self.orientation = self._read_orientation(frame)
@@ -141,19 +134,59 @@ class VideoReader:
             previous = self._time_of(frame, previous)
             self._video_end = previous + int(frame.duration or 0)
             yield DecodedFrame(index, previous, bool(frame.key_frame), frame, self.orientation)
-            index += 1
+
+    def _sound(self) -> Iterator[Any]:
+        """Frames that depend on nothing broken.
+
+        After damage they begin again at a keyframe. Frames predicted from both sides come out before the
+        later one of the two, so they are held (a handful at most) until that one proves sound.
+        """
+        held: list[Any] = []
+        started = waiting = False
+        for frame in self._decode():
+            if frame is None:
+                yield from held
+            if frame is None or frame.is_corrupt:
+                # Recordings may begin in the middle of a group; what cannot decode there was never lost.
+                self._note("frames that do not decode" if started else "")
+                held, waiting = [], True
+            elif waiting and not frame.key_frame:
+                continue
+            elif frame.pict_type == PictureType.B:
+                held.append(frame)
+            else:
+                yield from held
+                yield frame
+                held, started, waiting = [], True, False
+        yield from held
 
     def _decode(self) -> Iterator[Any]:
-        """Frames of the video stream as PyAV gives them; None for a packet that does not decode."""
+        """Frames of the video stream as PyAV gives them; None in place of a packet that does not decode.
+
+        Before the None comes everything that was decoded before that packet.
+        """
+        decoder = self._stream.codec_context
         for packet in self._packets():
             if packet.is_corrupt:
                 self._note("a packet that is cut off")
-                yield None
-                continue
-            try:
-                yield from packet.decode()
-            except av.error.FFmpegError:
-                yield None
+            else:
+                try:
+                    frames = packet.decode()
+                except av.error.FFmpegError:
+                    pass
+                else:
+                    yield from frames
+                    continue
+            yield from self._drained()
+            decoder.flush_buffers()
+            yield None
+
+    def _drained(self) -> list[Any]:
+        """What the decoder still holds."""
+        try:
+            return list(self._stream.codec_context.decode(None))
+        except av.error.FFmpegError:
+            return []
 
     def _packets(self) -> Iterator[Any]:
         """Packets of the video stream; those of all streams count towards how far the file reaches."""
@@ -165,7 +198,7 @@ class VideoReader:
                 return
             except av.error.FFmpegError:
                 self._note("data missing before the end")
-                yield from self._flush()
+                yield self._end()
                 return
             if packet.pts is not None and packet.time_base:
                 start = packet.pts * Fraction(packet.time_base)
@@ -174,11 +207,11 @@ class VideoReader:
             if packet.stream_index == self._stream.index:
                 yield packet
 
-    def _flush(self) -> Iterator[Any]:
-        """An empty packet, which makes the decoder hand out what it still holds."""
+    def _end(self) -> Any:
+        """The empty packet that makes the decoder hand out what it still holds."""
         packet = av.Packet()
         packet.stream = self._stream
-        yield packet
+        return packet
 
     def _note(self, what: str) -> None:
         if what and what not in self.damage:

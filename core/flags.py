@@ -17,6 +17,7 @@ SEVERITIES: tuple[Severity, ...] = ("info", "warning", "error")
 FLAG_CODES: Mapping[str, str] = {
     "interval_clipped": "the preset's interval reached beyond the video and was cut to it",
     "truncated_video": "the video is damaged; only its decodable part was used",
+    "times_repaired": "some frames of the video had no usable time of their own; one was filled in",
     "annotations_outside_video": "some time keys of the annotations lie outside the video; they have no frame",
     "boxes_in_crop_frame": "boxes were scaled to the cropped image, as the thesis does; most places are wrong by it",
     "principal_point_at_crop_centre": "the principal point started at the crop's centre, as the thesis does",

@@ -17,7 +17,11 @@ def run(task: StageTask) -> StageResult:
     table = probe_video(task.video, allow_truncated=task.settings.input.allow_truncated, on_frame=on_frame)
     table.write(task.out)
     info = table.info
-    flags = [Flag("truncated_video", "warning", where="; ".join(info.damage))] if info.truncated else []
+    flags = []
+    if info.truncated:
+        flags.append(Flag("truncated_video", "warning", where="; ".join(info.damage)))
+    if info.repaired_times:
+        flags.append(Flag("times_repaired", "warning", float(info.repaired_times), 0.0, "frames"))
     return StageResult(
         {
             "n_frames": info.n_frames,

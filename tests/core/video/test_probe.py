@@ -156,3 +156,34 @@ def test_probing_can_be_stopped():
 
     with pytest.raises(Cancelled):
         probe_video(SAMPLE, on_frame=stop)
+
+
+def test_a_changing_frame_size_is_refused(tmp_path: Path):
+    small = make_video(tmp_path / "a.ts", every_ms(40, 20)).read_bytes()
+    large = make_video(tmp_path / "b.ts", every_ms(40, 20), size=(176, 144)).read_bytes()
+    joined = tmp_path / "joined.ts"
+    joined.write_bytes(small + large)
+    with pytest.raises(BadInput, match=r"frame size of 'joined.ts' changes at frame") as caught:
+        probe_video(joined)
+    assert caught.value.code == "frame_size_changes"
+
+
+def test_a_recording_may_begin_in_the_middle_of_a_group(tmp_path: Path):
+    whole = make_video(tmp_path / "a.ts", every_ms(40, 30))
+    late = tmp_path / "late.ts"
+    late.write_bytes(whole.read_bytes()[188 * 30 :])
+    table = probe_video(late)
+    assert not table.info.truncated
+    assert table.rows[0].keyframe
+    hashes = {row.pts: row.sha256 for row in probe_video(whole).rows}
+    assert all(hashes[row.pts] == row.sha256 for row in table.rows)
+
+
+def test_times_that_run_backwards_are_repaired_and_counted(tmp_path: Path):
+    part = make_video(tmp_path / "a.ts", every_ms(40, 20)).read_bytes()
+    twice = tmp_path / "twice.ts"
+    twice.write_bytes(part * 2)
+    table = probe_video(twice, allow_truncated=True)
+    assert table.info.repaired_times > 0
+    pts = [row.pts for row in table.rows]
+    assert pts == sorted(set(pts))

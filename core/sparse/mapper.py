@@ -7,6 +7,7 @@ call gives bit-identical models (COLMAP issues #3402, #3544).
 
 from __future__ import annotations
 
+import copy
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -25,7 +26,13 @@ FAR_PX = 1e6
 """A point with a larger mean reprojection error lies at or behind infinity and says nothing about the model."""
 
 WHOLE_SHARE = 0.9
-"""A model with at least this share of the images is taken as whole: no second start is tried."""
+"""A model with at least this share of the images is taken as whole: no other initial pair is tried."""
+
+ENOUGH_SHARE = 0.5
+"""Below this share of the images, COLMAP's own search of an initial pair follows the given ones."""
+
+PAIR_ANGLE_DEG = 1.0
+"""Least median triangulation angle of a given initial pair, which was ranked by its angle already."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +40,7 @@ class ModelStats:
     """What a sparse model is judged by. Errors are over points with a finite mean error."""
 
     registered_images: int
-    points3D: int
+    points3D: int  # noqa: N815 (COLMAP's and the contract's name)
     mean_reprojection_error_px: float
     median_reprojection_error_px: float
     mean_track_length: float
@@ -79,6 +86,8 @@ def mapper_options(settings: MapperSettings, *, threads: int, seed: int, tuned: 
         options.ba_global_function_tolerance = 1e-5
         options.ba_local_max_num_iterations = 15
         options.ba_local_function_tolerance = 1e-5
+        # Neighbouring frames of a video rarely reach COLMAP's 16 degrees: its search would try every pair in vain.
+        options.mapper.init_min_tri_angle = 6.0
     return options
 
 
@@ -105,12 +114,10 @@ def map_images(
         return _grow(cache, options, restrict_model(start_model, _names(cache)), progress)
     models: list[Any] = []
     for pair in pairs:
-        options.init_image_id1, options.init_image_id2 = pair
-        models += _grow(cache, options, pycolmap.Reconstruction(), progress)
+        models += _grow(cache, _from_pair(options, pair), pycolmap.Reconstruction(), progress)
         if _largest(models) >= WHOLE_SHARE * cache.num_images():
             break
-    options.init_image_id1 = options.init_image_id2 = -1
-    if _largest(models) < 0.5 * cache.num_images():
+    if _largest(models) < ENOUGH_SHARE * cache.num_images():
         models += _search(cache, options, progress)
     return models
 
@@ -158,6 +165,15 @@ def restrict_model(model: Any, names: Iterable[str]) -> Any:
         return pycolmap.Reconstruction(folder)
 
 
+def _from_pair(options: Any, pair: tuple[int, int]) -> Any:
+    """Copy of the options that starts from `pair`, forward motion allowed: its angle was looked at."""
+    chosen = copy.deepcopy(options)
+    chosen.init_image_id1, chosen.init_image_id2 = pair
+    chosen.mapper.init_min_tri_angle = PAIR_ANGLE_DEG
+    chosen.mapper.init_max_forward_motion = 1.0
+    return chosen
+
+
 def _grow(cache: Any, options: Any, model: Any, progress: Progress | None) -> list[Any]:
     """Register images into `model` (from the options' initial pair when it is empty) until none is left."""
     pipeline = pycolmap.IncrementalPipeline(options, cache, pycolmap.ReconstructionManager())
@@ -172,12 +188,7 @@ def _search(cache: Any, options: Any, progress: Progress | None) -> list[Any]:
     """COLMAP's pipeline as it is: its own initial pairs, as many models as the options allow."""
     manager = pycolmap.ReconstructionManager()
     pipeline = pycolmap.IncrementalPipeline(options, cache, manager)
-    _watch(
-        pipeline,
-        lambda: max((manager.get(i).num_reg_images() for i in range(manager.size())), default=0),
-        cache,
-        progress,
-    )
+    _watch(pipeline, lambda: _largest([manager.get(i) for i in range(manager.size())]), cache, progress)
     pipeline.run()
     # COLMAP keeps a first model below min_model_size as well (ENGINES section 7): filter by size here.
     models = [manager.get(i) for i in range(manager.size())]
@@ -189,7 +200,7 @@ def _watch(pipeline: Any, count: Callable[[], int], cache: Any, progress: Progre
         return
     total = int(cache.num_images())
     event = pycolmap.IncrementalPipelineCallback.NEXT_IMAGE_REG_CALLBACK
-    pipeline.add_callback(event.value if hasattr(event, "value") else int(event), lambda: progress(count(), total))
+    pipeline.add_callback(event.value, lambda: progress(count(), total))
 
 
 def _largest(models: Sequence[Any]) -> int:

@@ -1,0 +1,60 @@
+"""What the stages `coarse` and `refine` share: a task in, a model folder and a row of cases.csv out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pycolmap
+
+from core.sparse.cases import Case, CaseResult, run_case
+from core.stage import StageResult, StageTask
+
+
+def run_case_task(task: StageTask, kind: str) -> StageResult:
+    """Map the window of a task; no model is an outcome, not an error."""
+    case = Case(
+        task.input("graph"),
+        int(task.args["start"]),
+        int(task.args["end"]),
+        task.settings.mapper,
+        task.settings.seed,
+        task.threads,
+    )
+
+    def progress(registered: int, offered: int) -> None:
+        task.report(registered, offered, f"{registered} of {offered} images")
+
+    result = run_case(case, _start_model(task), progress)
+    if result.model is not None:
+        folder = task.out / "model"
+        folder.mkdir()
+        result.model.write_binary(folder)
+    return StageResult(_row(task, kind, result))
+
+
+def _start_model(task: StageTask) -> Any | None:
+    """The model named by the plan; None without one, or when that case failed or has no model."""
+    name = task.args.get("warm_from")
+    folder = task.inputs.get(f"coarse/{name}") if name else None
+    if folder is None or not (folder / "model").is_dir():
+        return None
+    return pycolmap.Reconstruction(folder / "model")
+
+
+def _row(task: StageTask, kind: str, result: CaseResult) -> dict[str, Any]:
+    stats = result.stats
+    return {
+        "name": task.args["name"],
+        "kind": kind,
+        "start": int(task.args["start"]),
+        "end": int(task.args["end"]),
+        "status": "no_model" if result.model is None else "succeeded",
+        "reason": result.reason,
+        "frames": result.frames,
+        "models": result.models,
+        "registered_images": stats.registered_images,
+        "points3D": stats.points3D,
+        "mean_reprojection_error_px": stats.mean_reprojection_error_px,
+        "median_reprojection_error_px": stats.median_reprojection_error_px,
+        "start_mode": result.start_mode,
+    }

@@ -1,0 +1,74 @@
+"""The reducer's rule: which case wins (thesis 3.3.3), and why there may be none."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from core.errors import NoReconstruction, StageFailed
+
+Row = Mapping[str, Any]
+
+WINNER_FIELDS = ("start", "end", "kind", "registered_images", "points3D")
+
+
+def score(row: Row) -> tuple[int, int]:
+    """S(M) = (registered images, 3D points), compared lexicographically; of the row of a case."""
+    return int(row["registered_images"]), int(row["points3D"])
+
+
+def rank(rows: Sequence[Row]) -> list[Row]:
+    """Cases that have a model, best first; equal scores keep the order of their names."""
+    with_model = [row for row in rows if row["status"] == "succeeded"]
+    return sorted(sorted(with_model, key=lambda row: str(row["name"])), key=score, reverse=True)
+
+
+def reduce_cases(rows: Sequence[Row]) -> dict[str, Any]:
+    """Facts of the reducer over the cases that ended.
+
+    Raises `NoReconstruction` with the reasons counted when no case has a model.
+    """
+    ranking = rank(rows)
+    if not ranking:
+        raise NoReconstruction(f"no case has a model: {_reasons(rows)}", where="search")
+    return _facts(ranking[0], ranking)
+
+
+def reduce_refined(coarse_best: Row, refined: Sequence[Row]) -> dict[str, Any]:
+    """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better."""
+    ranking = rank(refined)
+    winner = ranking[0] if ranking and score(ranking[0]) > score(coarse_best) else coarse_best
+    others = [row for row in (*ranking, coarse_best) if row["name"] != winner["name"]]
+    return _facts(winner, [winner, *sorted(others, key=score, reverse=True)])
+
+
+def case_rows(facts: Mapping[str, Mapping[str, Any]], stage: str) -> list[Row]:
+    """Rows of the cases of `stage` among a task's facts, ordered by key."""
+    return [facts[key] for key in sorted(facts) if key.startswith(stage + "/")]
+
+
+def find_row(rows: Sequence[Row], name: str) -> Row:
+    """The row of the case `name`; `StageFailed` when it is missing."""
+    for row in rows:
+        if row["name"] == name:
+            return row
+    raise StageFailed(f"the case {name} has no row", where="search")
+
+
+def _facts(winner: Row, ranking: Sequence[Row]) -> dict[str, Any]:
+    return {
+        "best": winner["name"],
+        **{field: winner[field] for field in WINNER_FIELDS},
+        "ranking": [
+            {"name": row["name"], "registered_images": row["registered_images"], "points3D": row["points3D"]}
+            for row in ranking
+        ],
+    }
+
+
+def _reasons(rows: Sequence[Row]) -> str:
+    if not rows:
+        return "every case failed"
+    counts = Counter(str(row["reason"]) for row in rows)
+    return ", ".join(f"{reason} in {count} of {len(rows)} cases" for reason, count in sorted(counts.items()))

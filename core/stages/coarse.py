@@ -1,0 +1,11 @@
+"""Stage `coarse`: one coarse window."""
+
+from __future__ import annotations
+
+from core.sparse.case_stage import run_case_task
+from core.stage import StageResult, StageTask
+
+
+def run(task: StageTask) -> StageResult:
+    """Map the window; see `core.sparse.cases.run_case`."""
+    return run_case_task(task, "coarse")

@@ -1,0 +1,13 @@
+"""Stage `reduce_coarse`: the best coarse case by the thesis's score."""
+
+from __future__ import annotations
+
+from core.sparse.reduce import case_rows, reduce_cases
+from core.stage import StageResult, StageTask
+
+
+def run(task: StageTask) -> StageResult:
+    """Rank the coarse cases; `NoReconstruction` when none has a model."""
+    rows = case_rows(task.facts, "coarse")
+    task.report(1, 1, f"{len(rows)} cases ranked")
+    return StageResult(reduce_cases(rows))

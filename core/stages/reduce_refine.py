@@ -1,0 +1,14 @@
+"""Stage `reduce_refine`: a refined case replaces the best coarse one only if strictly better."""
+
+from __future__ import annotations
+
+from core.sparse.reduce import case_rows, find_row, reduce_refined
+from core.stage import StageResult, StageTask
+
+
+def run(task: StageTask) -> StageResult:
+    """Rank the refined cases against the best coarse one."""
+    best = find_row(case_rows(task.facts, "coarse"), str(task.facts["reduce_coarse"]["best"]))
+    refined = case_rows(task.facts, "refine")
+    task.report(1, 1, f"{len(refined)} refined cases ranked")
+    return StageResult(reduce_refined(best, refined))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections import Counter, defaultdict
 from collections.abc import Callable
 from dataclasses import asdict
 from types import TracebackType
@@ -108,9 +109,9 @@ class _Stages:
     """Sums what the tasks of a stage took, to say it once when the stage is through."""
 
     def __init__(self) -> None:
-        self._seconds: dict[str, float] = {}
-        self._computed: dict[str, int] = {}
-        self._lost: dict[str, int] = {}
+        self._seconds: defaultdict[str, float] = defaultdict(float)
+        self._ended: dict[str, Counter[str]] = {}
+        self._said: set[str] = set()
 
     def finished(self, event: Event) -> str | None:
         """The line of a stage whose last task just ended, or of a retry; else None."""
@@ -119,20 +120,23 @@ class _Stages:
         if event.kind != "ended":
             return None
         stage = event.stage
+        self._ended.setdefault(stage, Counter())["reused" if event.reused else event.state] += 1
         if not event.reused:
-            self._seconds[stage] = self._seconds.get(stage, 0.0) + (event.seconds or 0.0)
-            self._computed[stage] = self._computed.get(stage, 0) + 1
-        if event.state not in ("succeeded", "skipped"):
-            self._lost[stage] = self._lost.get(stage, 0) + 1
-        if event.done < event.total:
+            self._seconds[stage] += event.seconds or 0.0
+        if event.done < event.total or stage in self._said:
             return None
-        parts = [f"{stage:<14}"]
-        if event.total > 1:
-            parts.append(f"{event.total} tasks")
-        parts.append(duration(self._seconds[stage]) if stage in self._computed else "already there")
-        if self._lost.get(stage):
-            parts.append(f"{self._lost[stage]} without a result")
-        return "  ".join(parts)
+        self._said.add(stage)
+        return "  ".join([f"{stage:<14}", *self._parts(stage, event.total)])
+
+    def _parts(self, stage: str, total: int) -> list[str]:
+        ended = self._ended[stage]
+        if set(ended) == {"skipped"}:
+            return ["skipped"]
+        parts = [f"{total} tasks"] if total > 1 else []
+        parts.append("already there" if set(ended) == {"reused"} else duration(self._seconds[stage]))
+        if lost := ended["failed"]:
+            parts.append(f"{lost} without a result")
+        return parts
 
 
 def choose(as_json: bool) -> Display:

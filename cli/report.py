@@ -46,11 +46,12 @@ def _headline(summary: dict[str, Any]) -> list[str]:
 
 
 def _funnel(quality: dict[str, Any]) -> list[str]:
-    funnel = quality.get("funnel")
-    if not isinstance(funnel, dict):
-        return []
-    steps = [(name.replace("_", " "), value) for name, value in funnel.items() if isinstance(value, int)]
-    return ["", "  " + " -> ".join(f"{name} {value}" for name, value in steps)]
+    steps = {name: value for name, value in quality.get("funnel", {}).items() if value is not None}
+    # Approximate places are no step on the way to a defect: they stand beside the mapped ones.
+    beside = f" (and {steps.pop('approximate')} approximate)" if steps.get("approximate") else ""
+    steps.pop("approximate", None)
+    texts = [f"{name.replace('_', ' ')} {value}{beside if name == 'mapped' else ''}" for name, value in steps.items()]
+    return ["", "  " + " -> ".join(texts)] if texts else []
 
 
 def _verdict(quality: dict[str, Any]) -> list[str]:

@@ -18,6 +18,8 @@ EVENTS = [
     Event("ended", 0.7, 10.0, "coarse", "coarse/b", "succeeded", 2, 2, 1.0, 4.0),
     Event("retry", 0.7, 10.0, "fuse", "fuse", message="worker lost"),
     Event("ended", 0.9, 1.0, "fuse", "fuse", "succeeded", 1, 1, 1.0, None, True),
+    Event("ended", 0.95, 1.0, "mesh", "mesh", "skipped", 1, 1, 1.0, 0.0),
+    Event("ended", 0.95, 1.0, "mesh", "mesh", "skipped", 1, 1, 1.0, 0.0),
     Event("finished", 1.0, state="succeeded"),
 ]
 
@@ -32,6 +34,7 @@ def test_plain_lines_say_each_stage_once() -> None:
         "[ 70%] coarse          2 tasks  8.0 s  1 without a result  (about 10.0 s left)",
         "[ 70%] fuse: trying again: worker lost  (about 10.0 s left)",
         "[ 90%] fuse            already there  (about 1.0 s left)",
+        "[ 95%] mesh            skipped  (about 1.0 s left)",
     ]
 
 

@@ -19,7 +19,7 @@ def test_report_says_what_was_made(tmp_path: Path) -> None:
     quality = {
         "verdict": "suspect",
         "flags": [flag, {**bare, "meaning": "n"}],
-        "funnel": {"detections": 90, "frame_found": 88, "surface_hit": None, "mapped": 70},
+        "funnel": {"detections": 90, "frame_found": 88, "surface_hit": None, "mapped": 70, "approximate": 5},
     }
     (tmp_path / "quality.json").write_text(json.dumps(quality))
     text = report.text(Outcome("succeeded", tmp_path, 75.0, 12, 3))
@@ -27,7 +27,7 @@ def test_report_says_what_was_made(tmp_path: Path) -> None:
     assert "mean reprojection error px  0.8123" in text
     assert "12,345" in text
     assert "fused points" not in text
-    assert "detections 90 -> frame found 88 -> mapped 70" in text
+    assert "detections 90 -> frame found 88 -> mapped 70 (and 5 approximate)" in text
     assert "verdict: suspect" in text
     assert "warning few_points: 12, threshold 50: m" in text
     assert "error bent_model (model 0): n" in text

@@ -13,6 +13,7 @@ from core.mapping.rows import DetectionRow
 
 U8 = NDArray[np.uint8]
 RGB = tuple[int, int, int]
+Plate = tuple[int, int, int, int]
 
 PALETTE: tuple[RGB, ...] = (
     (255, 176, 0),
@@ -27,6 +28,7 @@ PALETTE: tuple[RGB, ...] = (
 """Colours that stay apart on grey metal and for most kinds of colour blindness; labels take them in order."""
 
 _DASH_PX = 7
+_INK: RGB = (40, 44, 48)
 _MAX_LABEL = 28
 
 
@@ -142,27 +144,47 @@ def _tag(picture: U8, text: str, corner: tuple[int, int], color: RGB) -> None:
 
 
 def draw_defect_numbers(rgb: U8, defect: NDArray[np.int32]) -> U8:
-    """A copy of a rendering with a numbered mark beside every defect seen in it.
+    """A copy of a rendering with a numbered mark beside every defect seen in it, no mark upon another.
 
     Args:
         rgb: (h, w, 3)
         defect: (h, w) defect number of each pixel, -1 none.
     """
     picture = np.ascontiguousarray(rgb).copy()
-    height, width = defect.shape
+    width = defect.shape[1]
     scale = max(0.35, width / 2200)
+    taken: list[Plate] = []
     for number in np.unique(defect[defect >= 0]):
         rows, columns = np.nonzero(defect == number)
-        x, y = int(np.median(columns)), int(np.median(rows))
+        at = (int(np.median(columns)), int(np.median(rows)))
         text = f"D{number}"
-        (wide, high), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
-        reach = round(0.03 * width)
-        tag_x = int(np.clip(x + reach, 4, width - wide - 12))
-        tag_y = int(np.clip(y - reach, high + 12, height - 8))
-        cv2.line(picture, (x, y), (tag_x, tag_y), (40, 44, 48), 1, cv2.LINE_AA)
-        plate = ((tag_x - 4, tag_y - high - 6), (tag_x + wide + 6, tag_y + 6))
-        cv2.rectangle(picture, *plate, (255, 255, 255), cv2.FILLED)
-        cv2.rectangle(picture, *plate, (40, 44, 48), 1)
-        at = (tag_x + 1, tag_y)
-        cv2.putText(picture, text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, (150, 0, 0), 1, cv2.LINE_AA)
+        size, _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
+        plate = _free_plate(at, (size[0] + 10, size[1] + 12), defect.shape, taken)
+        taken.append(plate)
+        left, top, right, bottom = plate
+        cv2.line(picture, at, ((left + right) // 2, (top + bottom) // 2), _INK, 1, cv2.LINE_AA)
+        cv2.rectangle(picture, (left, top), (right, bottom), (255, 255, 255), cv2.FILLED)
+        cv2.rectangle(picture, (left, top), (right, bottom), _INK, 1)
+        start = (left + 5, bottom - 6)
+        cv2.putText(picture, text, start, cv2.FONT_HERSHEY_SIMPLEX, scale, (150, 0, 0), 1, cv2.LINE_AA)
     return picture
+
+
+def _free_plate(at: tuple[int, int], size: tuple[int, int], shape: tuple[int, ...], taken: Sequence[Plate]) -> Plate:
+    """The first plate around a place, going round it and outwards, that covers no other; inside the picture."""
+    height, width = shape[:2]
+    plate = (0, 0, size[0], size[1])
+    for reach in (0.045, 0.07, 0.1):
+        for angle in np.radians([-45, -135, 45, 135, -90, 90, 0, 180]):
+            x = at[0] + reach * width * np.cos(angle) - size[0] / 2
+            y = at[1] + reach * width * np.sin(angle) - size[1] / 2
+            left = int(np.clip(x, 2, max(2, width - size[0] - 2)))
+            top = int(np.clip(y, 2, max(2, height - size[1] - 2)))
+            plate = (left, top, left + size[0], top + size[1])
+            if not any(_touch(plate, other) for other in taken):
+                return plate
+    return plate
+
+
+def _touch(a: Plate, b: Plate) -> bool:
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]

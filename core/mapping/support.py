@@ -83,7 +83,7 @@ def read_sparse_model(folder: Path, frame_indices: Iterable[int] | None = None) 
         if wanted is None or image_id - 1 in wanted:
             observations[image_id - 1] = _observations(model.image(image_id))
     needed = {int(i) for seen in observations.values() for i in seen.point_ids}
-    positions = {i: np.asarray(model.point3D(i).xyz, dtype=np.float64) for i in sorted(needed)}
+    positions = {i: np.array(model.point3D(i).xyz, dtype=np.float64) for i in sorted(needed)}
     return SparseModel(observations, positions)
 
 

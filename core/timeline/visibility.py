@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -49,10 +50,13 @@ class Sighting:
 
 def views_of_model(model: Any) -> list[View]:
     """Registered images of a pycolmap.Reconstruction, ordered by frame index (image id - 1)."""
+    # Copies, because a camera that belongs to a model is freed with it.
+    cameras = {camera_id: copy.deepcopy(camera) for camera_id, camera in model.cameras.items()}
     views = []
     for image_id in sorted(model.reg_image_ids()):
         image = model.image(image_id)
-        views.append(View(image_id - 1, np.asarray(image.cam_from_world().matrix(), dtype=np.float64), image.camera))
+        pose = np.array(image.cam_from_world().matrix(), dtype=np.float64)
+        views.append(View(image_id - 1, pose, cameras[image.camera_id]))
     return views
 
 

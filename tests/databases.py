@@ -1,0 +1,49 @@
+"""Databases for tests: a SQLite file, and a PostgreSQL database that is made and dropped around a test."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from sqlalchemy import create_engine, text
+from sqlalchemy.engine import make_url
+
+from store.db import Database, make_engine, sqlite_url, upgrade
+from tests.conftest import service_url
+
+BOTH = [pytest.param("sqlite"), pytest.param("postgresql", marks=pytest.mark.service("postgresql"))]
+"""Parameters of a fixture that runs its tests on both databases."""
+
+
+@contextmanager
+def database_url(kind: str, folder: Path) -> Iterator[str]:
+    """URL of an empty database."""
+    if kind == "sqlite":
+        yield sqlite_url(folder / "plan.db")
+        return
+    server = make_engine(service_url("postgresql")).url
+    name = f"bladeatlas_test_{uuid.uuid4().hex[:12]}"
+    admin = create_engine(server.set(database="postgres"), isolation_level="AUTOCOMMIT")
+    with admin.connect() as connection:
+        connection.execute(text(f'CREATE DATABASE "{name}"'))
+    try:
+        yield make_url(server).set(database=name).render_as_string(hide_password=False)
+    finally:
+        with admin.connect() as connection:
+            connection.execute(text(f'DROP DATABASE "{name}" WITH (FORCE)'))
+        admin.dispose()
+
+
+@contextmanager
+def database(kind: str, folder: Path) -> Iterator[Database]:
+    """A database with its tables."""
+    with database_url(kind, folder) as url:
+        upgrade(url)
+        opened = Database(url)
+        try:
+            yield opened
+        finally:
+            opened.close()

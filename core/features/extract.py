@@ -69,6 +69,8 @@ def _sift_detector(settings: FeatureSettings) -> Extractor:
     return detect
 
 
-def keep_keypoints(features: FrameFeatures, kept: NDArray[np.bool_]) -> FrameFeatures:
-    """The features where `kept` (n,) is true, in the same order."""
+def inside_mask(features: FrameFeatures, mask: NDArray[np.bool_]) -> FrameFeatures:
+    """The features whose pixel is true in `mask` (height, width), in the same order."""
+    x, y = np.floor(features.keypoints).astype(np.int64).T
+    kept = mask[np.clip(y, 0, mask.shape[0] - 1), np.clip(x, 0, mask.shape[1] - 1)]
     return FrameFeatures(features.keypoints[kept], features.scores[kept], features.descriptors[kept])

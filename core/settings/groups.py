@@ -87,10 +87,13 @@ class MatchSettings(Group):
         5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1
     )
     ratio: float = option(
-        0.98, "mutual nearest: distance ratio first / second must be below", source="measured", gt=0, le=1
+        1.0, "mutual nearest: distance ratio first / second must be below; 1 = no test", source="measured", gt=0, le=1
     )
     auto_min_inliers: int = option(
         100, "auto: fewer verified inliers than this call for LightGlue", source="measured", ge=0
+    )
+    auto_keypoints: int = option(
+        2048, "auto: LightGlue takes this many of the strongest keypoints", source="measured", ge=64
     )
     auto_min_inlier_share: float = option(
         0.25, "auto: a smaller share of verified matches calls for LightGlue", source="measured", ge=0, le=1
@@ -102,6 +105,13 @@ class VerificationSettings(Group):
 
     max_error_px: float = option(1.5, "RANSAC inlier threshold", unit="px", source="thesis 4.0; measured", gt=0)
     min_inliers: int = option(15, "inliers below which a pair is dropped", source="COLMAP", ge=8)
+    min_inlier_share: float = option(
+        0.1,
+        "share of the matches below which a pair is dropped: chance alone reaches a few percent",
+        source="measured; COLMAP 0",
+        ge=0,
+        le=1,
+    )
 
 
 class WindowSettings(Group):

@@ -53,6 +53,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "camera.principal_point": "crop",
         "matching.method": "lightglue",
         "verification.max_error_px": 4.0,
+        "verification.min_inlier_share": 0.0,
         "windows.start": "scratch",
         "mapper.initial_pair": "colmap",
         "mapper.bundle_adjustment": "colmap",

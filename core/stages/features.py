@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
-from core.features.blade_masks import blade_polygons, inside_blades
-from core.features.extract import keep_keypoints, make_extractor, read_image
+from core.annotations.masks import blade_mask
+from core.annotations.placed import load_masks
+from core.features.extract import inside_mask, make_extractor, read_image
 from core.features.io import feature_name, write_features
+from core.roi import Crop
 from core.stage import StageResult, StageTask
 
 
@@ -21,14 +25,14 @@ def run(task: StageTask) -> StageResult:
     settings = task.settings.features
     frames = task.input("frames")
     extract = make_extractor(settings, task.threads)
-    blades = _blades(task, frames) if settings.blade_masks_only else None
+    mask_of = _blade_masks(task, frames) if settings.blade_masks_only else None
     counts = []
     for done, index in enumerate(range(start, end)):
         task.report(done, end - start, f"frame {index}")
         features = extract(read_image(frames / "images" / f"{index:04d}.jpg"))
-        if blades is not None:
-            polygons = blade_polygons(blades["masks"].get(str(blades["source_index"][index]), []))
-            features = keep_keypoints(features, inside_blades(features.keypoints, polygons, blades["crop"]))
+        mask = mask_of(index) if mask_of else None
+        if mask is not None:
+            features = inside_mask(features, mask)
         write_features(task.out / feature_name(index), features)
         counts.append(len(features))
     task.report(1, 1)
@@ -41,11 +45,10 @@ def run(task: StageTask) -> StageResult:
     )
 
 
-def _blades(task: StageTask, frames: Path) -> dict[str, Any]:
-    """Masks by source index, the crop, and the source index of every frame."""
-    rows = json.loads((frames / "frames.json").read_text())
-    return {
-        "masks": json.loads((task.input("annotations") / "masks.json").read_text()),
-        "crop": json.loads((frames / "crop.json").read_text()),
-        "source_index": {int(row["index"]): int(row["source_index"]) for row in rows},
-    }
+def _blade_masks(task: StageTask, frames: Path) -> Callable[[int], NDArray[np.bool_] | None]:
+    """Mask of the blades on a frame; None for a frame without annotated blades, which keeps everything."""
+    rows = json.loads((frames / "frames.json").read_text(encoding="utf-8"))
+    source_index = {int(row["index"]): int(row["source_index"]) for row in rows}
+    crop = Crop(**json.loads((frames / "crop.json").read_text(encoding="utf-8")))
+    masks = load_masks(task.input("annotations"))
+    return lambda index: blade_mask(masks.get(source_index[index], ()), crop)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from core.errors import StageFailed
-from core.features.blade_masks import blade_polygons, inside_blades
-from core.features.extract import keep_keypoints, make_extractor, read_image, working_size
+from core.features.extract import inside_mask, make_extractor, read_image, working_size
 from core.features.io import FrameFeatures, read_features, write_features
 from core.settings import make_settings
 
@@ -73,15 +72,12 @@ def test_subpixel_moves_by_less_than_a_pixel() -> None:
     np.testing.assert_array_equal(whole.descriptors, fine.descriptors)
 
 
-def test_blade_masks_keep_what_lies_on_a_blade() -> None:
-    crop = {"x0": 10, "y0": 20, "x1": 90, "y1": 80, "source_width": 100, "source_height": 100}
-    masks = [
-        {"label": "blade", "polygon": [[0.2, 0.3], [0.5, 0.3], [0.5, 0.6], [0.2, 0.6]]},
-        {"label": "dent", "polygon": [[0.6, 0.6], [0.8, 0.6], [0.8, 0.8]]},
-    ]
-    keypoints = np.array([[15, 15], [5, 15], [55, 45]], np.float32)  # source: (25, 35), (15, 35), (65, 65)
-    np.testing.assert_array_equal(inside_blades(keypoints, blade_polygons(masks), crop), [True, False, False])
-    assert inside_blades(keypoints, [], crop).all()
+def test_mask_keeps_what_lies_on_true_pixels() -> None:
+    mask = np.zeros((6, 8), np.bool_)
+    mask[2, 3] = True
+    keypoints = np.array([[3.5, 2.5], [4.0, 2.5], [3.99, 2.01], [3.5, 3.2]], np.float32)
+    features = FrameFeatures(keypoints, np.arange(4, dtype=np.float32), np.zeros((4, 128), np.float16))
+    assert inside_mask(features, mask).scores.tolist() == [0, 2]
 
 
 def test_files_round_trip_and_have_the_same_bytes(tmp_path: Path) -> None:
@@ -94,7 +90,6 @@ def test_files_round_trip_and_have_the_same_bytes(tmp_path: Path) -> None:
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
     back = read_features(tmp_path / "a.npz")
     np.testing.assert_array_equal(back.descriptors, features.descriptors)
-    assert len(keep_keypoints(back, np.array([True, False, True, False, False]))) == 2
 
 
 def test_unreadable_files_are_named(tmp_path: Path) -> None:

@@ -1,0 +1,1 @@
+"""Which frames are paired, and how their keypoints are matched."""

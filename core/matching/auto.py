@@ -1,0 +1,90 @@
+"""One pair of frames from features to verified matches, by the method the settings name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from core.errors import BadInput
+from core.features.io import FrameFeatures
+from core.matching.mutual_nearest import Matches, mutual_nearest, unit_descriptors
+from core.settings.groups import FeatureSettings, MatchSettings
+from core.verification import TwoViewGeometry, Verifier
+
+MUTUAL_NEAREST = 0
+LIGHTGLUE = 1
+
+
+@dataclass(frozen=True)
+class MatchedPair:
+    """Outcome of one pair."""
+
+    method: int
+    """`MUTUAL_NEAREST` or `LIGHTGLUE`: whose matches these are."""
+    n_matches: int
+    """Matches before verification."""
+    geometry: TwoViewGeometry
+
+
+class PairMatcher:
+    """Matches and verifies pairs of frames that share one camera."""
+
+    def __init__(self, matching: MatchSettings, features: FeatureSettings, verifier: Verifier) -> None:
+        """Refuse, as `BadInput`, LightGlue for SIFT: there are no weights for it."""
+        if matching.method == "lightglue" and features.method != "disk":
+            raise BadInput("matching.method 'lightglue' needs features.method 'disk'", where="matching.method")
+        self._settings = matching
+        self._use_lightglue = matching.method == "lightglue"
+        self._may_rematch = matching.method == "auto" and features.method == "disk"
+        self._verifier = verifier
+        self._network: Any = None
+        self._units = _LastUsed(lambda features: unit_descriptors(features.descriptors))
+
+    def match(self, first: FrameFeatures, second: FrameFeatures) -> MatchedPair:
+        """Verified matches of two frames.
+
+        `auto` takes mutual nearest neighbours. Where too few or too small a share of them pass the
+        verification, LightGlue tries again on the strongest keypoints, and the better outcome counts.
+        """
+        if self._use_lightglue:
+            return self._verified(LIGHTGLUE, self._lightglue(first, second, None), first, second)
+        matches = mutual_nearest(self._units(first), self._units(second), self._settings.ratio)
+        cheap = self._verified(MUTUAL_NEAREST, matches, first, second)
+        if not self._may_rematch or not self._weak(cheap):
+            return cheap
+        matches = self._lightglue(first, second, self._settings.auto_keypoints)
+        better = self._verified(LIGHTGLUE, matches, first, second)
+        return better if len(better.geometry.inliers) > len(cheap.geometry.inliers) else cheap
+
+    def _weak(self, pair: MatchedPair) -> bool:
+        inliers = len(pair.geometry.inliers)
+        share = inliers / pair.n_matches if pair.n_matches else 0.0
+        return inliers < self._settings.auto_min_inliers or share < self._settings.auto_min_inlier_share
+
+    def _verified(self, method: int, matches: Matches, first: FrameFeatures, second: FrameFeatures) -> MatchedPair:
+        geometry = self._verifier.verify(first.keypoints, second.keypoints, matches)
+        return MatchedPair(method, len(matches), geometry)
+
+    def _lightglue(self, first: FrameFeatures, second: FrameFeatures, strongest: int | None) -> Matches:
+        from core.matching.lightglue import LightGlueMatcher  # many runs never load the network
+
+        if self._network is None:
+            self._network = LightGlueMatcher()
+        matches: Matches = self._network.match(first, second, self._verifier.size, strongest)
+        return matches
+
+
+class _LastUsed:
+    """Remembers the results for the features used last, which neighbouring pairs share."""
+
+    def __init__(self, make: Callable[[FrameFeatures], Any], size: int = 12) -> None:
+        self._make, self._size = make, size
+        self._kept: dict[int, tuple[FrameFeatures, Any]] = {}
+
+    def __call__(self, features: FrameFeatures) -> Any:
+        found = self._kept.pop(id(features), None) or (features, self._make(features))
+        self._kept[id(features)] = found
+        while len(self._kept) > self._size:
+            del self._kept[next(iter(self._kept))]
+        return found[1]

@@ -1,0 +1,25 @@
+"""Stage `graph`: the chunks of matches joined to one view graph, as arrays and as COLMAP's database."""
+
+from __future__ import annotations
+
+import json
+
+from core.features.io import read_features
+from core.stage import StageResult, StageTask
+from core.stages.matches import feature_folders
+from core.verification import read_camera
+from core.viewgraph import graph_facts, join_tables, read_table, write_database, write_table
+
+
+def run(task: StageTask) -> StageResult:
+    """Write ``graph.npz`` and ``database.db`` over all frames."""
+    table = join_tables(read_table(folder / "pairs.npz") for _, folder in task.fan_in("matches"))
+    write_table(task.out / "graph.npz", table)
+    task.report(0.2, 1, "writing the database")
+    rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))
+    files = feature_folders(task)
+    camera = read_camera(task.input("camera") / "camera.json")
+    keypoints = (read_features(files[index]).keypoints for index in range(len(rows)))
+    write_database(task.out / "database.db", camera, keypoints, table)
+    task.report(1, 1)
+    return StageResult(graph_facts(table, len(rows)))

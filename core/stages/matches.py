@@ -1,0 +1,64 @@
+"""Stage `matches`: the pairs of a chunk of frames, matched and verified."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import torch
+
+from core.errors import StageFailed
+from core.features.io import FrameFeatures, read_features
+from core.matching.auto import MatchedPair, PairMatcher
+from core.matching.pairs import match_pairs, pairs_of_chunk
+from core.stage import StageResult, StageTask
+from core.verification import Verifier, read_camera
+from core.viewgraph import make_table, table_facts, write_table
+
+
+def run(task: StageTask) -> StageResult:
+    """Match and verify the pairs whose first frame lies in [start, end)."""
+    torch.set_num_threads(task.threads)
+    settings = task.settings
+    pairs = pairs_of_chunk(_all_pairs(task), int(task.args["start"]), int(task.args["end"]))
+    camera = read_camera(task.input("camera") / "camera.json")
+    verifier = Verifier(camera, settings.verification, settings.seed)
+    matcher = PairMatcher(settings.matching, settings.features, verifier)
+    folders = feature_folders(task)
+    last_use = {frame: row for row, pair in enumerate(pairs) for frame in pair}
+    loaded: dict[int, FrameFeatures] = {}
+    matched: list[MatchedPair] = []
+    for row, pair in enumerate(pairs):
+        task.report(row, len(pairs), f"frames {pair[0]} and {pair[1]}")
+        for frame in pair:
+            if frame not in loaded:
+                loaded[frame] = read_features(folders[frame])
+        matched.append(matcher.match(loaded[pair[0]], loaded[pair[1]]))
+        for frame in pair:
+            if last_use[frame] == row:
+                del loaded[frame]
+    table = make_table(pairs, matched)
+    write_table(task.out / "pairs.npz", table)
+    task.report(1, 1)
+    return StageResult(dict(table_facts(table)))
+
+
+def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
+    rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))
+    times = [float(row["time_s"]) for row in sorted(rows, key=lambda row: int(row["index"]))]
+    n_search = sum(row["role"] != "added" for row in rows)
+    return match_pairs(times, n_search, task.settings.matching.window)
+
+
+class _Files(dict[int, Path]):
+    """Feature files by frame; asking for one that no chunk has is a broken plan."""
+
+    def __missing__(self, frame: int) -> Path:
+        raise StageFailed(f"frame {frame} has no features", where="features")
+
+
+def feature_folders(task: StageTask) -> dict[int, Path]:
+    """Feature file of every frame, over all chunks."""
+    return _Files(
+        {int(path.stem): path for _, folder in task.fan_in("features") for path in sorted(folder.glob("[0-9]*.npz"))}
+    )

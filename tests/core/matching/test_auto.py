@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from core.errors import BadInput
+from core.features.io import FrameFeatures
+from core.matching.auto import LIGHTGLUE, MUTUAL_NEAREST, PairMatcher
+from core.matching.lightglue import LightGlueMatcher, rename
+from core.settings import make_settings
+from core.verification import Verifier
+from tests.core.making_views import bumpy_points, fisheye, pose, true_matches, view
+
+
+def _matcher(**options: Any) -> PairMatcher:
+    settings = make_settings(options={name.replace("__", "."): value for name, value in options.items()})
+    return PairMatcher(settings.matching, settings.features, Verifier(fisheye(), settings.verification))
+
+
+def _frames(blur: float) -> tuple[FrameFeatures, FrameFeatures, np.ndarray]:
+    """Two views whose points carry random descriptors, disturbed by `blur`; and the true matches."""
+    points = bumpy_points(250)
+    rng = np.random.default_rng(4)
+    descriptors = rng.normal(size=(len(points), 128))
+    frames, seen = [], []
+    for i in (0, 2):
+        keypoints, visible = view(points, pose(i), seed=i)
+        mine = descriptors[visible] + blur * rng.normal(size=(len(visible), 128))
+        mine /= np.linalg.norm(mine, axis=1, keepdims=True)
+        scores = np.linspace(2, 1, len(visible), dtype=np.float32)
+        frames.append(FrameFeatures(keypoints, scores, mine.astype(np.float16)))
+        seen.append(visible)
+    return frames[0], frames[1], true_matches(seen[0], seen[1])
+
+
+@pytest.fixture(autouse=True)
+def _one_thread() -> None:
+    torch.set_num_threads(1)
+
+
+def test_good_pairs_never_see_lightglue() -> None:
+    first, second, truth = _frames(blur=0.1)
+    found = _matcher(matching__method="auto").match(first, second)
+    assert found.method == MUTUAL_NEAREST
+    assert len(found.geometry.inliers) > 0.95 * len(truth)
+
+
+def test_weak_pairs_are_tried_again_and_the_better_outcome_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second, truth = _frames(blur=1.6)  # most nearest neighbours are wrong
+    asked: list[int | None] = []
+
+    def match(self: LightGlueMatcher, a: FrameFeatures, b: FrameFeatures, size: Any, strongest: int | None) -> Any:
+        asked.append(strongest)
+        assert size == (640, 480)
+        return truth
+
+    monkeypatch.setattr(LightGlueMatcher, "match", match)
+    cheap = _matcher(matching__method="mutual_nearest").match(first, second)
+    options = {"matching__method": "auto", "matching__auto_min_inliers": 150, "matching__auto_keypoints": 99}
+    found = _matcher(**options).match(first, second)
+    assert asked == [99]
+    assert found.method == LIGHTGLUE
+    assert len(found.geometry.inliers) > len(cheap.geometry.inliers)
+
+    truth = truth[:5]  # LightGlue fails too: what there was is kept
+    kept = _matcher(**options).match(first, second)
+    assert kept.method == MUTUAL_NEAREST
+    np.testing.assert_array_equal(kept.geometry.inliers, cheap.geometry.inliers)
+
+
+def test_lightglue_for_sift_is_refused_and_auto_stays_cheap() -> None:
+    with pytest.raises(BadInput, match="disk"):
+        _matcher(matching__method="lightglue", features__method="sift")
+    first, second, _ = _frames(blur=1.6)
+    found = _matcher(matching__method="auto", matching__auto_min_inliers=500, features__method="sift")
+    assert found.match(first, second).method == MUTUAL_NEAREST
+
+
+def test_lightglue_runs_with_the_weights_of_the_wheel() -> None:
+    first, second, truth = _frames(blur=0.0)
+    matches = LightGlueMatcher().match(first, second, (640, 480), 60)
+    assert matches.dtype == np.uint32
+    assert matches.max(initial=0) < 60
+    right = {tuple(row) for row in truth.tolist()}
+    assert len(matches) > 10
+    assert np.mean([tuple(row) in right for row in matches.tolist()]) > 0.8
+
+
+def test_weights_are_renamed() -> None:
+    assert rename("self_attn.3.Wqkv.weight") == "transformers.3.self_attn.Wqkv.weight"
+    assert rename("cross_attn.0.to_qk.bias") == "transformers.0.cross_attn.to_qk.bias"
+    assert rename("posenc.Wr.weight") == "posenc.Wr.weight"

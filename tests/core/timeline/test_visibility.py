@@ -1,0 +1,67 @@
+"""Lines of sight in a scene of two walls: what is in front hides what is behind."""
+
+from __future__ import annotations
+
+import gc
+from typing import Any
+
+import cv2  # noqa: F401  # before pycolmap
+import numpy as np
+import pycolmap
+import pytest
+
+from core.timeline.visibility import Occlusion, View, sightings, views_of_model
+
+
+def wall(z: float, half: float) -> tuple[np.ndarray, np.ndarray]:
+    corners = np.array([[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]])
+    return corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+
+
+def camera() -> Any:
+    return pycolmap.Camera(model="PINHOLE", width=200, height=100, params=[100, 100, 100, 50], camera_id=1)
+
+
+def view(index: int, x: float, z: float) -> View:
+    return View(index, np.hstack([np.eye(3), [[-x], [0], [-z]]]), camera())
+
+
+BACK, NEAR = wall(10.0, 8.0), wall(5.0, 0.5)
+VERTICES = np.vstack([BACK[0], NEAR[0]])
+FACES = np.vstack([BACK[1], NEAR[1] + 4])
+PLACE = np.array([[0, 0, 10.0], [0.1, 0, 10], [0, 0.1, 10]])
+NORMAL = np.array([0.0, 0, -1])
+
+
+def test_hidden_outside_behind_and_seen() -> None:
+    views = [view(0, 0.0, 0.0), view(1, 6.0, 0.0), view(2, 30.0, 0.0), view(3, 0.0, 20.0), view(4, 0.0, 7.0)]
+    seen = sightings(PLACE, NORMAL, views, Occlusion(VERTICES, FACES), 0.01)
+    assert [sighting.frame_index for sighting in seen] == [4, 1]
+    assert seen[0].quality == 1.0
+    assert seen[1].quality < 0.1
+
+
+def test_the_tolerance_lets_through_what_lies_just_before() -> None:
+    shifted = PLACE + [0, 0, 0.05]
+    blocked = sightings(shifted, NORMAL, [view(0, 0.0, 7.0)], Occlusion(VERTICES, FACES), 0.01)
+    let_through = sightings(shifted, NORMAL, [view(0, 0.0, 7.0)], Occlusion(VERTICES, FACES), 0.1)
+    assert (len(blocked), len(let_through)) == (0, 1)
+
+
+def test_without_a_surface_nothing_hides() -> None:
+    nothing = Occlusion(np.zeros((0, 3)), np.zeros((0, 3), np.int32))
+    assert len(sightings(PLACE, np.zeros(3), [view(0, 0.0, 0.0)], nothing, 0.0)) == 1
+
+
+def test_views_outlive_their_model() -> None:
+    options = pycolmap.SyntheticDatasetOptions()
+    options.num_rigs, options.num_frames_per_rig, options.num_points3D = 1, 4, 30
+    model = pycolmap.synthesize_dataset(options)
+    expected = {image.image_id - 1: image.projection_center() for image in model.images.values()}
+    views = views_of_model(model)
+    del model
+    gc.collect()
+    assert [v.camera.width for v in views] == [1024] * 4
+    assert [v.frame_index for v in views] == sorted(expected)
+    for v in views:
+        assert v.center == pytest.approx(expected[v.frame_index])

@@ -21,7 +21,8 @@ from core.sparse.mapper import (
     open_cache,
 )
 from core.sparse.tracks import build_tracks, choose_keypoints, thin_cache
-from core.sparse.view_graph import Frames, ViewGraph, read_frames, read_view_graph
+from core.sparse.view_graph import Frames, read_frames, within
+from core.viewgraph import PairTable, read_table
 
 MIN_MATCHES = 15
 """Inliers below which a pair takes no part; COLMAP's default."""
@@ -68,7 +69,7 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
         progress: see `core.sparse.mapper.Progress`.
     """
     frames = read_frames(case.graph / "database.db", case.start, case.end)
-    graph = read_view_graph(case.graph / "graph.npz").within(case.start, case.end)
+    graph = within(read_table(case.graph / "graph.npz"), case.start, case.end)
     models: list[Any] = []
     mode = "scratch"
     if _usable(graph, frames, case.settings):
@@ -90,7 +91,7 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
 NO_MODEL = ModelStats(0, 0, 0.0, 0.0, 0.0)
 
 
-def _search_cache(case: Case, graph: ViewGraph, frames: Frames, full: Any) -> Any:
+def _search_cache(case: Case, graph: PairTable, frames: Frames, full: Any) -> Any:
     """The cache that poses are searched on: `full` itself, or one with few keypoints per frame."""
     if case.settings.search_tracks == 0:
         return full
@@ -103,7 +104,7 @@ def _options(case: Case) -> Any:
     return mapper_options(case.settings, threads=case.threads, seed=case.seed, tuned=tuned)
 
 
-def _map_scratch(case: Case, search: Any, full: Any, graph: ViewGraph, progress: Progress | None) -> list[Any]:
+def _map_scratch(case: Case, search: Any, full: Any, graph: PairTable, progress: Progress | None) -> list[Any]:
     pairs: list[tuple[int, int]] = []
     if case.settings.initial_pair == "graph":
         ranked = rank_initial_pairs(graph, case.settings.init_min_num_inliers)
@@ -134,17 +135,17 @@ def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:
     return bool(drop or abs(focal / before - 1.0) > FOCAL_JUMP)
 
 
-def _usable(graph: ViewGraph, frames: Frames, settings: MapperSettings) -> bool:
+def _usable(graph: PairTable, frames: Frames, settings: MapperSettings) -> bool:
     return len(frames.names) >= settings.min_model_size and bool((graph.n_inliers >= MIN_MATCHES).any())
 
 
-def _reason(graph: ViewGraph, frames: Frames, settings: MapperSettings) -> str:
+def _reason(graph: PairTable, frames: Frames, settings: MapperSettings) -> str:
     """Why there is no model, as a code."""
     if len(frames.names) < settings.min_model_size:
         return "too_few_frames"
     strong = graph.n_inliers >= settings.init_min_num_inliers
     if not strong.any():
         return "too_few_matches"
-    if np.percentile(graph.angle_deg[strong], 90) < MIN_ANGLE_DEG:
+    if np.percentile(graph.triangulation_angle_deg[strong], 90) < MIN_ANGLE_DEG:
         return "no_parallax"
     return "no_initial_pair"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.sparse.view_graph import CALIBRATED, ViewGraph
+from core.verification import CALIBRATED
+from core.viewgraph import PairTable
 
 ENOUGH_ANGLE_DEG = 16.0
 """COLMAP's `init_min_tri_angle`: a wider median angle is no better start."""
@@ -19,7 +20,7 @@ APART_FRAMES = 10
 """Candidates start at least this far from each other, so that a second try is a different place."""
 
 
-def rank_initial_pairs(graph: ViewGraph, min_inliers: int, n_best: int = 4) -> list[tuple[int, int]]:
+def rank_initial_pairs(graph: PairTable, min_inliers: int, n_best: int = 4) -> list[tuple[int, int]]:
     """The best pairs to start from, best first: calibrated, wide median angle, many inliers.
 
     Args:
@@ -31,8 +32,8 @@ def rank_initial_pairs(graph: ViewGraph, min_inliers: int, n_best: int = 4) -> l
         frame indices (a, b), each at least `APART_FRAMES` from the ones before.
     """
     inliers = graph.n_inliers
-    score = np.minimum(graph.angle_deg, ENOUGH_ANGLE_DEG) * inliers / (inliers + ENOUGH_INLIERS)
-    usable = (graph.config == CALIBRATED) & (inliers >= min_inliers) & (graph.angle_deg >= MIN_ANGLE_DEG)
+    score = np.minimum(graph.triangulation_angle_deg, ENOUGH_ANGLE_DEG) * inliers / (inliers + ENOUGH_INLIERS)
+    usable = (graph.config == CALIBRATED) & (inliers >= min_inliers) & (graph.triangulation_angle_deg >= MIN_ANGLE_DEG)
     order = np.lexsort((np.arange(len(score)), -score))
     chosen: list[tuple[int, int]] = []
     for row in order[usable[order]]:

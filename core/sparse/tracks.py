@@ -18,7 +18,8 @@ import pycolmap
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from core.sparse.view_graph import Frames, ViewGraph
+from core.sparse.view_graph import Frames
+from core.viewgraph import PairTable
 
 GRID = (8, 6)
 """Cells over a frame, across and down."""
@@ -38,7 +39,7 @@ class Tracks:
     """(total,) keypoint index of each observation."""
 
 
-def build_tracks(graph: ViewGraph) -> Tracks:
+def build_tracks(graph: PairTable) -> Tracks:
     """Join all inliers of `graph` into tracks; ties in length keep the order of the first observation."""
     if len(graph.inliers) == 0:
         empty = np.zeros(0, dtype=np.int64)
@@ -82,7 +83,7 @@ def choose_keypoints(tracks: Tracks, frames: Frames, count: int) -> dict[int, np
     return chosen
 
 
-def thin_cache(graph: ViewGraph, frames: Frames, chosen: dict[int, npt.NDArray[np.int64]], min_num_matches: int) -> Any:
+def thin_cache(graph: PairTable, frames: Frames, chosen: dict[int, npt.NDArray[np.int64]], min_num_matches: int) -> Any:
     """`DatabaseCache` in memory with the chosen keypoints only; its keypoint indices are new.
 
     Pairs that keep fewer than `min_num_matches` inliers are left out, as `open_cache` does.

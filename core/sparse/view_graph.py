@@ -1,4 +1,4 @@
-"""The verified view graph as arrays, and the part of it that a window sees."""
+"""The part of the verified view graph that a window sees, and what else of its frames a mapper needs."""
 
 from __future__ import annotations
 
@@ -10,59 +10,29 @@ import numpy as np
 import numpy.typing as npt
 import pycolmap
 
-CALIBRATED = 2
-"""COLMAP's two-view configuration of a pair that moved past a surface that is not a plane."""
+from core.viewgraph import PairTable
 
 
-@dataclass(frozen=True)
-class ViewGraph:
-    """Pairs of frames and their inliers; see ``graph.npz`` in docs/stage-results.md."""
-
-    pairs: npt.NDArray[np.int32]
-    """(m, 2) frame indices."""
-    config: npt.NDArray[np.uint8]
-    """(m,) COLMAP's two-view configuration."""
-    angle_deg: npt.NDArray[np.float32]
-    """(m,) median triangulation angle."""
-    offsets: npt.NDArray[np.int64]
-    """(m + 1,) rows of `inliers` that belong to each pair."""
-    inliers: npt.NDArray[np.uint32]
-    """(total, 2) keypoint indices."""
-
-    @property
-    def n_inliers(self) -> npt.NDArray[np.int64]:
-        """(m,) inliers of every pair."""
-        return np.diff(self.offsets)
-
-    def within(self, start: int, end: int) -> ViewGraph:
-        """The pairs whose both frames lie in [start, end)."""
-        inside: npt.NDArray[np.bool_] = np.all((self.pairs >= start) & (self.pairs < end), axis=1)
-        return self.select(inside)
-
-    def select(self, mask: npt.NDArray[np.bool_]) -> ViewGraph:
-        """The pairs where `mask` (m,) is true."""
-        rows = np.repeat(mask, self.n_inliers)
-        counts = self.n_inliers[mask]
-        return ViewGraph(
-            self.pairs[mask],
-            self.config[mask],
-            self.angle_deg[mask],
-            np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-            self.inliers[rows],
-        )
-
-
-def read_view_graph(path: Path) -> ViewGraph:
-    """Read ``graph.npz``."""
-    with np.load(path) as data:
-        return ViewGraph(
-            data["pairs"], data["config"], data["triangulation_angle_deg"], data["offsets"], data["inliers"]
-        )
+def within(table: PairTable, start: int, end: int) -> PairTable:
+    """The verified pairs whose both frames lie in [start, end)."""
+    mask = np.all((table.pairs >= start) & (table.pairs < end), axis=1) & table.verified
+    counts = table.n_inliers[mask]
+    return PairTable(
+        table.pairs[mask],
+        table.method[mask],
+        table.n_matches[mask],
+        table.config[mask],
+        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        table.inliers[np.repeat(mask, table.n_inliers)],
+        table.rotation_xyzw[mask],
+        table.translation[mask],
+        table.triangulation_angle_deg[mask],
+    )
 
 
 @dataclass(frozen=True)
 class Frames:
-    """Names, keypoints and the camera of some frames, read from the database."""
+    """Names, keypoints and the camera of some frames."""
 
     indices: tuple[int, ...]
     """Frame indices, rising; image_id = index + 1."""

@@ -1,0 +1,182 @@
+"""The final bundle adjustment: converged, points filtered and completed again until nothing changes.
+
+The bundle adjustments of the search stop early, which is right for a search and not for a result. COLMAP's
+global refinement (`IncrementalMapper.iterative_global_refinement`) is followed in its order: complete and
+merge tracks, adjust, filter, repeat. It differs in that it always runs to convergence, filters more tightly
+at the end, and may free the principal point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pycolmap
+from numpy.typing import NDArray
+
+from core.sparse.mapper import model_stats
+
+F64 = NDArray[np.float64]
+
+MAX_ROUNDS = 5
+STABLE_CHANGE = 0.0005
+"""Rounds end when fewer observations than this share were filtered or completed (COLMAP's value)."""
+
+FUNCTION_TOLERANCE = 1e-7
+MAX_ITERATIONS = 100
+
+MAX_SIGMA_PX = 3.0
+"""The principal point is well determined when both its posterior sigmas are below this."""
+MAX_SHIFT_SHARE = 0.1
+"""A principal point farther from its start than this share of the longer image side is not believed."""
+MIN_IMAGES = 10
+
+PRINCIPAL_POINT = slice(2, 4)
+"""Place of cx, cy in the parameters of OPENCV_FISHEYE."""
+
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class PrincipalPoint:
+    """What freeing the principal point gave, and whether it was kept."""
+
+    refined: bool
+    reason: str
+    """``kept``, or why not: ``off``, ``few_images``, ``no_covariance``, ``uncertain``, ``implausible``, ``no_gain``."""
+    sigma_px: tuple[float, float] | None = None
+    """Posterior standard deviations of cx and cy, scaled by the residuals."""
+    shift_px: tuple[float, float] | None = None
+    """From the start to the free estimate."""
+
+
+@dataclass(frozen=True)
+class Adjustment:
+    """What the final adjustment did."""
+
+    model: Any
+    """`pycolmap.Reconstruction`"""
+    rounds: int
+    stable: bool
+    """Whether the last round changed next to nothing."""
+    error_before_px: float
+    error_after_px: float
+    principal_point: PrincipalPoint
+
+
+def adjust(
+    model: Any,
+    cache: Any,
+    options: Any,
+    *,
+    refine_principal_point: bool,
+    threads: int = 1,
+    progress: Progress = lambda share, message: None,
+) -> Adjustment:
+    """Adjust a copy of `model` to convergence.
+
+    Args:
+        model: with the image ids and keypoint indices of `cache`.
+        cache: `pycolmap.DatabaseCache` of the same images; its correspondences complete the tracks.
+        options: from `core.sparse.mapper.mapper_options`.
+        refine_principal_point: free it when it is well determined.
+        threads: of Ceres; more than one is nearly but not exactly repeatable.
+        progress: called with the share done.
+    """
+    work = pycolmap.Reconstruction(model)
+    before = model_stats(work).mean_reprojection_error_px
+    rounds, stable = _refine(work, cache, options, False, threads, lambda r: progress(0.6 * r, "bundle adjustment"))
+    found = PrincipalPoint(False, "off")
+    if refine_principal_point:
+        progress(0.65, "principal point")
+        found = free_principal_point(work, threads)
+        if found.refined:
+            more, stable = _refine(work, cache, options, True, threads, lambda r: progress(0.7 + 0.3 * r, "adjustment"))
+            rounds += more
+    return Adjustment(work, rounds, stable, before, model_stats(work).mean_reprojection_error_px, found)
+
+
+def free_principal_point(model: Any, threads: int = 1) -> PrincipalPoint:
+    """Adjust a copy with the principal point free and judge it by its covariance; `model` is not changed."""
+    if model.num_reg_images() < MIN_IMAGES:
+        return PrincipalPoint(False, "few_images")
+    trial = pycolmap.Reconstruction(model)
+    adjustment = adjustment_options(True, threads)
+    adjuster = pycolmap.create_default_ceres_bundle_adjuster(adjustment, _whole(trial), trial)
+    cost_before = _mean_square_px(model)
+    adjuster.solve()
+    camera = next(iter(trial.cameras.values()))
+    start = np.array(next(iter(model.cameras.values())).params)[PRINCIPAL_POINT]
+    shift = np.array(camera.params)[PRINCIPAL_POINT] - start
+    covariance = pycolmap.estimate_ba_covariance(pycolmap.BACovarianceOptions(), trial, adjuster)
+    block = None if covariance is None else covariance.get_other_params_cov(camera.params)
+    if block is None or not np.isfinite(block).all():
+        return PrincipalPoint(False, "no_covariance", None, _pair(shift))
+    cost_after = _mean_square_px(trial)
+    # Ceres counts residuals in px as if their sigma were 1; each observation has two of them.
+    sigma = np.sqrt(np.diag(block)[PRINCIPAL_POINT].clip(min=0) * cost_after / 2)
+    reason = "kept"
+    if (sigma > MAX_SIGMA_PX).any():
+        reason = "uncertain"
+    elif (np.abs(shift) > MAX_SHIFT_SHARE * max(camera.width, camera.height)).any():
+        reason = "implausible"
+    elif cost_after >= cost_before:
+        reason = "no_gain"
+    return PrincipalPoint(reason == "kept", reason, _pair(sigma), _pair(shift))
+
+
+def adjustment_options(principal_point: bool, threads: int) -> Any:
+    """`BundleAdjustmentOptions` that run until converged."""
+    options = pycolmap.BundleAdjustmentOptions()
+    options.print_summary = False
+    options.refine_principal_point = principal_point
+    solver = options.ceres.solver_options
+    solver.max_num_iterations = MAX_ITERATIONS
+    solver.function_tolerance = FUNCTION_TOLERANCE
+    solver.num_threads = threads
+    return options
+
+
+def _refine(
+    model: Any, cache: Any, options: Any, principal_point: bool, threads: int, progress: Callable[[float], None]
+) -> tuple[int, bool]:
+    """Rounds of completing, adjusting and filtering in place; how many, and whether the last changed nothing."""
+    triangulation, mapping = options.get_triangulation(), options.get_mapper()
+    adjustment = adjustment_options(principal_point, threads)
+    mapper = pycolmap.IncrementalMapper(cache)
+    mapper.begin_reconstruction(model)
+    rounds, stable = 0, False
+    while rounds < MAX_ROUNDS and not stable and model.num_points3D():
+        progress(rounds / MAX_ROUNDS)
+        changed = mapper.complete_and_merge_tracks(triangulation)
+        changed += mapper.retriangulate(triangulation)
+        mapper.adjust_global_bundle(mapping, adjustment)
+        # A point at infinity has no error that means anything: it goes here, before errors are averaged.
+        changed += mapper.filter_points(mapping)
+        stable = changed < STABLE_CHANGE * max(1, model.compute_num_observations())
+        rounds += 1
+    mapper.end_reconstruction(False)
+    return rounds, stable
+
+
+def _whole(model: Any) -> Any:
+    """Everything of a model, its gauge held by two cameras."""
+    config = pycolmap.BundleAdjustmentConfig()
+    for image_id in sorted(model.reg_image_ids()):
+        config.add_image(image_id)
+    config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
+    return config
+
+
+def _mean_square_px(model: Any) -> float:
+    """Mean squared reprojection error over the points, weighted by their observations (px^2)."""
+    model.update_point_3d_errors()
+    errors = np.array([point.error for point in model.points3D.values()])
+    lengths = np.array([point.track.length() for point in model.points3D.values()])
+    return float((errors**2 * lengths).sum() / max(1, lengths.sum()))
+
+
+def _pair(values: F64) -> tuple[float, float]:
+    return float(values[0]), float(values[1])

@@ -1,0 +1,47 @@
+"""The winner mapped again: the search's tuned bundle adjustment and warm starts may inherit errors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Literal
+
+from core.sparse.cases import Case, run_case
+from core.sparse.mapper import ModelStats, Progress, model_stats
+
+CONFIRM_TRACKS = 1000
+"""Keypoints per image that take part when the search takes all; on these COLMAP's own settings are affordable."""
+
+CLEARLY_WEAKER = 0.97
+"""The searched model is kept only if the confirmed one has a smaller share of its images or points than this."""
+
+Kept = Literal["confirmed", "searched"]
+
+
+def confirm(case: Case, progress: Progress | None = None) -> Any | None:
+    """Map the window from scratch with COLMAP's bundle adjustment; None when that gives no model."""
+    settings = case.settings.model_copy(
+        update={
+            "bundle_adjustment": "colmap",
+            "search_tracks": case.settings.search_tracks or CONFIRM_TRACKS,
+        }
+    )
+    return run_case(replace(case, settings=settings), None, progress).model
+
+
+def choose(searched: ModelStats, confirmed: ModelStats | None) -> Kept:
+    """The confirmed model, unless it is clearly weaker than the searched one."""
+    if confirmed is None:
+        return "searched"
+    weaker = (
+        confirmed.registered_images < CLEARLY_WEAKER * searched.registered_images
+        or confirmed.points3D < CLEARLY_WEAKER * searched.points3D
+    )
+    return "searched" if weaker else "confirmed"
+
+
+def confirmed_or_searched(case: Case, searched: Any, progress: Progress | None = None) -> tuple[Any, Kept]:
+    """The model to go on with and which one it is."""
+    confirmed = confirm(case, progress)
+    if confirmed is None or choose(model_stats(searched), model_stats(confirmed)) == "searched":
+        return searched, "searched"
+    return confirmed, "confirmed"

@@ -1,0 +1,161 @@
+"""The focal length, found from the video: map small spans from a start value and let the mapper refine it.
+
+The lens is modelled with one radial term here (SIMPLE_RADIAL_FISHEYE: an equidistant lens and k1): a short span
+does not determine more, and k1 to k4 beside a free focal length would trade against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pycolmap
+
+from core.features.io import FrameFeatures
+from core.matching.auto import PairMatcher
+from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
+from core.settings import Settings
+from core.sparse.initial_pair import rank_initial_pairs
+from core.sparse.mapper import best_model, map_images, mapper_options, model_stats
+from core.sparse.tracks import thin_cache
+from core.sparse.view_graph import Frames, within
+from core.verification import Verifier
+from core.viewgraph import make_table
+
+LENS = "SIMPLE_RADIAL_FISHEYE"
+
+KEYPOINTS = 1000
+"""Strongest keypoints per frame that take part."""
+
+GAPS = (1, 2, 4, 7)
+"""Frame differences of the matched pairs: wide ones fix the focal length, narrow ones hold the chain."""
+
+PROBE_GAP, PROBE_KEYPOINTS, PROBES = 4, 400, 8
+"""Spans are chosen by one pair of frames each: this far apart, with so many keypoints; so many per section."""
+
+ENOUGH_MATCHES, ENOUGH_MOTION_PX = 150, 40.0
+"""Matches and median motion of the probed pair beyond which a span is no better."""
+
+Load = Callable[[int], FrameFeatures]
+Report = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class SpanFocal:
+    """What one span says. A span without a model has 0 registered images and the start's focal length."""
+
+    start: int
+    end: int
+    focal_px: float
+    k1: float
+    registered_images: int
+    points3D: int  # noqa: N815 (COLMAP's and the contract's name)
+    mean_reprojection_error_px: float
+
+
+def choose_spans(n_frames: int, length: int, count: int, load: Load) -> list[tuple[int, int]]:
+    """Half-open spans of `length` frames, the liveliest of each of `count` equal sections of the clip.
+
+    Lively is a pair of frames in the middle of the span that matches well and moved far in the image.
+    """
+    length = min(length, n_frames)
+    sections = max(1, min(count, n_frames // length if length else 1))
+    spans: list[tuple[int, int]] = []
+    for section in range(sections):
+        first = section * n_frames // sections
+        last = max(first, (section + 1) * n_frames // sections - length)
+        starts = sorted({int(start) for start in np.linspace(first, last, PROBES)})
+        best = max(starts, key=lambda start: _liveliness(start + length // 2, n_frames, load))
+        spans.append((best, best + length))
+    return spans
+
+
+def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Load, report: Report) -> SpanFocal:
+    """Map one span from `camera` (of the model `LENS`) and refine its focal length and k1.
+
+    Args:
+        span: half-open interval of frames.
+        camera: `pycolmap.Camera` with the start value.
+        settings: of the run; its verification threshold, mapper and seed are used.
+        load: features of a frame.
+        report: progress in [0, 1].
+    """
+    frames, table = _match(span, camera, settings, load, report)
+    everything = {frame: np.arange(len(xy)) for frame, xy in zip(frames.indices, frames.keypoints, strict=True)}
+    cache = thin_cache(table, frames, everything, settings.verification.min_inliers)
+    ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
+    options = mapper_options(settings.mapper, threads=1, seed=settings.seed, tuned=True)
+    options.multiple_models = False
+    models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
+    model = best_model(models)
+    if model is None:
+        return SpanFocal(*span, camera.mean_focal_length(), 0.0, 0, 0, 0.0)
+    adjustment = pycolmap.BundleAdjustmentOptions()
+    adjustment.print_summary = False
+    pycolmap.bundle_adjustment(model, adjustment)
+    stats, lens = model_stats(model), model.cameras[camera.camera_id]
+    return SpanFocal(
+        *span,
+        float(lens.mean_focal_length()),
+        float(lens.params[3]),
+        stats.registered_images,
+        stats.points3D,
+        stats.mean_reprojection_error_px,
+    )
+
+
+def _match(span: tuple[int, int], camera: Any, settings: Settings, load: Load, report: Report) -> tuple[Frames, Any]:
+    """The frames of a span and their verified pairs, with this camera."""
+    indices = tuple(range(*span))
+    features = {index: strongest(load(index), KEYPOINTS) for index in indices}
+    matching = settings.matching.model_copy(update={"method": "mutual_nearest"})
+    matcher = PairMatcher(matching, settings.features, Verifier(camera, settings.verification, settings.seed))
+    pairs = [(a, a + gap) for a in indices for gap in GAPS if a + gap < span[1]]
+    matched = []
+    for row, (a, b) in enumerate(pairs):
+        report(row / len(pairs), f"frames {a} and {b}")
+        matched.append(matcher.match(features[a], features[b]))
+    keypoints = tuple(features[index].keypoints.astype(np.float64) for index in indices)
+    frames = Frames(indices, tuple(f"{index:04d}.jpg" for index in indices), keypoints, camera)
+    return frames, within(make_table(pairs, matched), *span)
+
+
+def strongest(features: FrameFeatures, count: int) -> FrameFeatures:
+    """The first `count` keypoints, which are the strongest."""
+    return FrameFeatures(features.keypoints[:count], features.scores[:count], features.descriptors[:count])
+
+
+def _liveliness(middle: int, n_frames: int, load: Load) -> float:
+    a = max(0, min(middle - PROBE_GAP // 2, n_frames - 1 - PROBE_GAP))
+    first, second = (strongest(load(min(i, n_frames - 1)), PROBE_KEYPOINTS) for i in (a, a + PROBE_GAP))
+    if len(first) == 0 or len(second) == 0:
+        return 0.0
+    matches = mutual_nearest(unit_descriptors(first.descriptors), unit_descriptors(second.descriptors), 0.9)
+    if len(matches) == 0:
+        return 0.0
+    moved = first.keypoints[matches[:, 0]] - second.keypoints[matches[:, 1]]
+    motion = float(np.median(np.linalg.norm(moved, axis=1)))
+    return min(1.0, len(matches) / ENOUGH_MATCHES) * min(motion, ENOUGH_MOTION_PX)
+
+
+def joined(spans: Sequence[SpanFocal]) -> dict[str, Any]:
+    """One start's facts over its spans; the focal length is the mean in logarithm, weighted by points."""
+    weights = np.array([span.points3D for span in spans], dtype=np.float64)
+    total = float(weights.sum())
+    if total == 0.0:
+        focal, k1, error = float(np.mean([span.focal_px for span in spans])), 0.0, 0.0
+    else:
+        weights /= total
+        focal = float(np.exp(weights @ np.log([span.focal_px for span in spans])))
+        k1 = float(weights @ np.array([span.k1 for span in spans]))
+        error = float(weights @ np.array([span.mean_reprojection_error_px for span in spans]))
+    return {
+        "focal_px": focal,
+        "k1": k1,
+        "registered": sum(span.registered_images for span in spans),
+        "points3D": int(total),
+        "mean_reprojection_error_px": error,
+        "frames": sum(span.end - span.start for span in spans),
+    }

@@ -1,0 +1,114 @@
+"""Where the lens model starts: focal length, principal point, and the choice between estimated focal lengths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pycolmap
+
+from core.settings.groups import CameraSettings
+from core.sparse.focal import LENS
+
+MODEL = "OPENCV_FISHEYE"
+
+MIN_REGISTERED, MIN_POINTS = 8, 100
+"""Registered images and points below which a start has found nothing."""
+
+REGISTERED_SLACK, POINTS_SLACK = 0.95, 0.9
+"""Starts within these shares of the most registered images and points are equals; the smallest error decides."""
+
+AGREE = 0.05
+"""Starts that end within this share of the chosen focal length agree with it."""
+
+FOV_RANGE_DEG = (10.0, 240.0)
+"""A focal length that gives another horizontal field of view is no lens."""
+
+
+def focal_from_fov(fov_deg: float, source_width: int) -> float:
+    """Focal length in px of an equidistant lens (r = f theta) with this horizontal view of the source frame."""
+    return source_width / 2.0 / math.radians(fov_deg / 2.0)
+
+
+def fov_from_focal(focal_px: float, source_width: int) -> float:
+    """The inverse of `focal_from_fov`, in degrees."""
+    return 2.0 * math.degrees(source_width / 2.0 / focal_px)
+
+
+def principal_point(frames: Mapping[str, Any], settings: CameraSettings) -> tuple[float, float]:
+    """(cx, cy) in crop pixels from the facts of stage `frames`."""
+    x0, y0, x1, y1 = (float(value) for value in frames["crop"])
+    if settings.principal_point == "crop":
+        return (x1 - x0) / 2.0, (y1 - y0) / 2.0
+    return float(frames["source_width"]) / 2.0 - x0, float(frames["source_height"]) / 2.0 - y0
+
+
+def start_lens(frames: Mapping[str, Any], settings: CameraSettings, fov_deg: float) -> Any:
+    """`pycolmap.Camera` of the estimate's lens model for one start; its focal length counts as a prior."""
+    width, height = _size(frames)
+    cx, cy = principal_point(frames, settings)
+    focal = focal_from_fov(fov_deg, int(frames["source_width"]))
+    return pycolmap.Camera(
+        camera_id=1, model=LENS, width=width, height=height, params=[focal, cx, cy, 0.0], has_prior_focal_length=True
+    )
+
+
+def choose_lens(
+    frames: Mapping[str, Any], settings: CameraSettings, starts: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Content of ``camera.json``, with the starts it was chosen from.
+
+    A given field of view counts before everything else; without usable starts it is COLMAP's default, 1.2 times
+    the longer side of the crop. `reason` says why an estimate was asked for and not used.
+    """
+    width, height = _size(frames)
+    focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
+    chosen: Mapping[str, Any] | None = None
+    if settings.fov_deg is not None:
+        focal, origin = focal_from_fov(settings.fov_deg, int(frames["source_width"])), "given"
+    elif settings.focal == "estimate":
+        chosen = _best_start(starts, int(frames["source_width"]))
+        if chosen is None:
+            reason = "no_start_found_a_model"
+        else:
+            focal, k1, origin = float(chosen["focal_px"]), float(chosen["k1"]), "estimated"
+    return {
+        "model": MODEL,
+        "width": width,
+        "height": height,
+        "params": [focal, focal, *principal_point(frames, settings), k1, 0.0, 0.0, 0.0],
+        "focal_from": origin,
+        "reason": reason,
+        "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
+        "agreement": _agreement(starts, focal) if chosen is not None else None,
+        "starts": [dict(start) for start in starts],
+    }
+
+
+def _best_start(starts: Sequence[Mapping[str, Any]], source_width: int) -> Mapping[str, Any] | None:
+    usable = [
+        start
+        for start in starts
+        if start["registered"] >= MIN_REGISTERED
+        and start["points3D"] >= MIN_POINTS
+        and FOV_RANGE_DEG[0] <= fov_from_focal(float(start["focal_px"]), source_width) <= FOV_RANGE_DEG[1]
+    ]
+    if not usable:
+        return None
+    registered = REGISTERED_SLACK * max(start["registered"] for start in usable)
+    usable = [start for start in usable if start["registered"] >= registered]
+    points = POINTS_SLACK * max(start["points3D"] for start in usable)
+    usable = [start for start in usable if start["points3D"] >= points]
+    return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
+
+
+def _agreement(starts: Sequence[Mapping[str, Any]], focal: float) -> float:
+    """Share of all starts that ended near `focal`."""
+    near = [start for start in starts if start["registered"] and abs(start["focal_px"] / focal - 1.0) <= AGREE]
+    return len(near) / len(starts)
+
+
+def _size(frames: Mapping[str, Any]) -> tuple[int, int]:
+    x0, y0, x1, y1 = (int(value) for value in frames["crop"])
+    return x1 - x0, y1 - y0

@@ -1,0 +1,38 @@
+"""Stage `focal`: what focal length the video gives when the search starts from one field of view."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import lru_cache
+
+import torch
+
+from core.features.io import FrameFeatures, read_features
+from core.sparse.focal import choose_spans, find_focal, joined
+from core.sparse.lens import start_lens
+from core.stage import StageResult, StageTask
+from core.stages.matches import feature_folders
+
+
+def run(task: StageTask) -> StageResult:
+    """Map a few spans from the task's field of view; a video that gives no model registers 0 images."""
+    torch.set_num_threads(task.threads)
+    settings, frames = task.settings, task.facts["frames"]
+    files = feature_folders(task)
+
+    @lru_cache(maxsize=64)
+    def load(index: int) -> FrameFeatures:
+        return read_features(files[index])
+
+    fov = float(task.args["fov_deg"])
+    lens = start_lens(frames, settings.camera, fov)
+    spans = choose_spans(int(frames["n_search"]), settings.camera.focal_span, settings.camera.focal_spans, load)
+    found = []
+    for number, span in enumerate(spans):
+
+        def report(share: float, message: str, number: int = number) -> None:
+            task.report(number + share, len(spans), message)
+
+        found.append(find_focal(span, lens, settings, load, report))
+    task.report(1, 1)
+    return StageResult({"fov_deg": fov, **joined(found), "spans": [asdict(span) for span in found]})

@@ -1,0 +1,104 @@
+"""The page trusts nothing from the annotation file and needs nothing but its own folder."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from core.gallery.boxes import FrameBoxes, label_colors
+from core.gallery.page import gallery_page
+from core.timeline.clusters import cluster_detections
+from core.timeline.events import event_rows, with_defect_ids
+from tests.core.making_rows import mapped, unplaced
+
+NASTY = [
+    "<script>alert(1)</script>",
+    '"><img src=x onerror=alert(1)>',
+    "' onmouseover='alert(1)",
+    "</style></script><svg/onload=alert(1)>",
+    "javascript:alert(1)//&quot;",
+    "läbel ☃ \u202e",
+]
+
+
+class Reader(HTMLParser):
+    """Collects elements, attributes and text of the body."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+    def of(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def page(labels: list[str], shown: int | None = None) -> tuple[str, Reader]:
+    rows = [mapped(i, (i * 10.0, 0, 0), float(i), label) for i, label in enumerate(labels)]
+    rows += [unplaced(len(labels), "no_frame", source_index=None)]
+    clusters = cluster_detections(rows, 1.0)
+    rows = with_defect_ids(rows, clusters)
+    frames = [FrameBoxes(i, float(i), (rows[i],)) for i in range(len(labels))]
+    colors = label_colors([row.label for row in rows])
+    html = gallery_page(frames[:shown], len(frames), rows, [e.to_dict() for e in event_rows(clusters)], colors)
+    reader = Reader()
+    reader.feed(html)
+    return html, reader
+
+
+@pytest.mark.parametrize("label", NASTY)
+def test_labels_are_only_ever_text(label: str) -> None:
+    harmless, nasty = page(["plain"])[1], page([label])[1]
+    assert [tag for tag, _ in nasty.elements] == [tag for tag, _ in harmless.elements]
+    names = [sorted(attributes) for _, attributes in harmless.elements]
+    assert [sorted(attributes) for _, attributes in nasty.elements] == names
+    assert label in nasty.text
+    assert label in [item["data-label"] for item in nasty.of("li")]
+
+
+def test_the_policy_allows_only_the_pages_own_script() -> None:
+    html, reader = page(["dent"])
+    policy = next(meta["content"] for meta in reader.of("meta") if "http-equiv" in meta)
+    script = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script[0].encode()).digest()).decode()
+    assert len(script) == 1
+    assert f"script-src 'sha256-{digest}'" in str(policy)
+    assert "default-src 'none'" in str(policy)
+
+
+def test_nothing_comes_from_a_network() -> None:
+    html, reader = page(["dent", "crack"])
+    assert "//" not in "".join(str(a.get("src") or a.get("href")) for _, a in reader.elements)
+    assert "http://" not in html
+    assert "https://" not in html
+
+
+def test_every_defect_links_to_a_frame_and_every_detection_to_its_defect() -> None:
+    _, reader = page(["dent", "crack"])
+    assert [button["data-defect"] for button in reader.of("button") if "data-defect" in button] == ["0", "1"]
+    assert [item["data-defect"] for item in reader.of("li")] == ["0", "1"]
+    links = [a["href"] for a in reader.of("a")]
+    assert {"mesh_1.png", "mesh_2.png", "frame_000000.jpg", "frame_000001.jpg"} <= set(links)
+    assert all(image["alt"] or image == {"alt": ""} for image in reader.of("img"))
+
+
+def test_says_what_it_leaves_out() -> None:
+    _, reader = page(["dent", "crack", "nick"], shown=2)
+    assert "2 of 3 frames are shown" in reader.text
+    assert "1 detections lie outside the video" in reader.text
+
+
+def test_an_inspection_without_detections_has_a_page() -> None:
+    html = gallery_page([], 0, [], [], {})
+    assert "No defect was placed on the surface." in html
+    assert "no detection inside the video" in html

@@ -1,0 +1,1 @@
+"""Dense stereo: undistortion, view selection, PatchMatch depth maps, geometric consistency, fusion."""

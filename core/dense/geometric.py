@@ -1,0 +1,86 @@
+"""Geometric consistency: depth maps corrected by, and filtered against, those of the source views."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.dense.maps import DenseScene, DepthMap, read_map
+from core.dense.patchmatch.consistency import count_consistent
+from core.dense.patchmatch.kernels import Sources
+from core.dense.patchmatch.matcher import ignore
+from core.dense.patchmatch.planes import from_normals
+from core.dense.stereo import PhotometricStereo, planes_to_map
+from core.dense.views import DenseView
+from core.settings.groups import DenseSettings
+
+F32 = NDArray[np.float32]
+
+CONSISTENCY_WEIGHT = 0.2
+"""Cost of one px of forward-backward error (COLMAP 0.3; 0.1 - 0.3 in the literature)."""
+MAX_ERROR_PX = 1.0
+"""Forward-backward error of an agreeing source (COLMAP's filter)."""
+DRAWS = 3
+STEP = 0.01
+
+
+class GeometricFilter:
+    """Depth maps with geometric consistency.
+
+    Args:
+        scene: result of `undistort`.
+        settings: of the dense stage.
+        maps: path of the photometric depth map of every view, by image name.
+        seed: of the random choices.
+        threads: rows are split over so many threads.
+    """
+
+    def __init__(
+        self, scene: DenseScene, settings: DenseSettings, maps: dict[str, Path], seed: int, threads: int = 1
+    ) -> None:
+        self._scene, self._settings, self._maps = scene, settings, maps
+        # Only the finest scale takes part here.
+        self._stereo = PhotometricStereo(scene, settings.model_copy(update={"levels": 1}), seed, threads)
+        self._depth = lru_cache(maxsize=16)(self._load)
+
+    def _load(self, name: str) -> F32:
+        """(h, w) inverse depth of a source; zeros for a source without a depth map."""
+        pinhole = self._scene.pinhole
+        if name not in self._maps:
+            return np.zeros((pinhole.height, pinhole.width), np.float32)
+        depth = read_map(self._maps[name]).depth
+        return np.where(depth > 0, 1.0 / np.where(depth > 0, depth, 1.0), 0.0).astype(np.float32)
+
+    def depth_map(self, view: DenseView, check: Callable[[float], None] = ignore) -> DepthMap:
+        """The corrected and filtered depth map of one view."""
+        settings, pinhole = self._settings, self._scene.pinhole
+        found = read_map(self._maps[view.name])
+        planes = from_normals(found.depth, found.normal, pinhole.index_matrix())
+        inverse = [self._depth(name) for name in view.sources]
+        matcher = self._stereo.matcher(view, 0, inverse, CONSISTENCY_WEIGHT)
+        planes[..., 3] = np.float32(np.inf)
+        pairs = matcher.score(planes)
+        for number in range(settings.geometric_passes):
+            matcher.sweep(planes, pairs, 100 + number, STEP * 0.5**number, DRAWS)
+            check((number + 1) / (settings.geometric_passes + 1))
+        self._stereo.matcher(view, 0).score(planes)
+        agreeing = self._agreeing(view, planes, matcher.sources)
+        cost = planes[..., 3]
+        keep = matcher.mask & (planes[..., 0] > 0) & (cost <= 1.0 - settings.min_ncc)
+        keep &= agreeing >= min(settings.min_consistent, len(view.sources))
+        return planes_to_map(planes, pinhole, keep)
+
+    def _agreeing(self, view: DenseView, planes: F32, sources: Sources) -> NDArray[np.uint8]:
+        """(h, w) number of sources that agree."""
+        K = self._scene.pinhole.index_matrix()
+        reference = self._scene.poses[view.name]
+        centers = [reference.R @ self._scene.poses[name].center + reference.t for name in view.sources]
+        cosine = np.cos(np.radians(self._settings.min_triangulation_deg))
+        packed = np.array([cosine, K[0, 0], K[0, 2], K[1, 2], *np.ravel(centers)], np.float32)
+        out = np.zeros(planes.shape[:2], np.uint8)
+        count_consistent(planes, sources, packed, np.float32(MAX_ERROR_PX), out)
+        return out

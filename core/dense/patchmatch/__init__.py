@@ -1,0 +1,1 @@
+"""PatchMatch multi-view stereo on the CPU: compiled kernels and the loop over scales."""

@@ -1,0 +1,148 @@
+"""One red-black sweep over rows of the image: spatial propagation, then refinement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.dense.patchmatch.jit import kernel
+from core.dense.patchmatch.kernels import (
+    RADIUS,
+    REGION_START,
+    REGION_X,
+    REGION_Y,
+    TAPS,
+    Patch,
+    plane_cost,
+    reference_patch,
+)
+from core.dense.patchmatch.planes import slant_ok, uniform
+
+f32 = np.float32
+DRAWS = 64
+"""Random numbers reserved per pixel and sweep."""
+MIN_COSINE = f32(0.12)
+"""Planes seen at more than 83 degrees are not tried."""
+SAME_DEPTH, SAME_SLOPE = f32(2e-4), f32(5e-3)
+"""Relative differences below which a neighbour's plane is the pixel's own: a few hundredths of a pixel of disparity."""
+SLOPE_SPAN = f32(1.5)
+"""Change of slant at full step, relative inverse depth per unit of the image plane."""
+EARLY_MARGIN = f32(0.02)
+"""The two best views alone may be so much worse before a plane is given up."""
+
+
+@kernel
+def _scratch(n_sources, best):  # type: ignore[no-untyped-def]
+    return Patch(
+        np.empty(TAPS, np.float32),
+        np.empty(TAPS, np.float32),
+        np.empty((n_sources, 3), np.float32),
+        np.empty(best, np.float32),
+        np.empty(best, np.int32),
+    )
+
+
+@kernel
+def score_rows(planes, pairs, grey, mask, sources, best, colour_weight, y0, y1):  # type: ignore[no-untyped-def]
+    """Cost of every present plane of rows [y0, y1) into channel 3, its two best sources into `pairs`."""
+    H, W = grey.shape
+    S = sources.A.shape[0]
+    patch = _scratch(S, best)
+    for v in range(max(y0, RADIUS), min(y1, H - RADIUS)):
+        for u in range(RADIUS, W - RADIUS):
+            if not mask[v, u] or planes[v, u, 0] <= f32(0):
+                continue
+            mean, variance = reference_patch(grey, u, v, sources.A, colour_weight, patch)
+            planes[v, u, 3] = plane_cost(
+                planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], f32(u), f32(v),
+                sources, W, H, patch, mean, variance, 0, min(1, S - 1), f32(1e9),
+            )  # fmt: skip
+            pairs[v, u, 0], pairs[v, u, 1] = _best_two(patch, S)
+
+
+@kernel
+def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
+    """The two best sources of the plane scored last; two different ones wherever there are two."""
+    first = patch.order[0]
+    second = patch.order[1] if patch.order.size > 1 else (first + 1) % n_sources
+    return first, second
+
+
+@kernel
+def sweep_rows(planes, pairs, grey, mask, sources, best, colour_weight, K, limits, colour, key, step, draws, y0, y1):  # type: ignore[no-untyped-def]
+    """Update the pixels of one colour in rows [y0, y1), reading only the other colour beside itself.
+
+    Args:
+        planes: (h, w, 4) float32: w, gu, gv, cost; updated in place.
+        pairs: (h, w, 2) uint8: the two sources that match best; updated in place.
+        grey: (h, w) uint8 reference; mask: (h, w) bool, where a patch lies inside the image.
+        sources: `kernels.Sources`; best: over how many of them the cost is a mean.
+        K: (3,) float32 f, cx, cy with whole-number pixel centres; limits: (2,) smallest and largest inverse depth.
+        colour: 0 or 1; key: random key of this view, scale and sweep.
+        step: size of refinement, 1 = the whole range; draws: refinements tried per pixel.
+    """
+    H, W = grey.shape
+    S = sources.A.shape[0]
+    patch = _scratch(S, best)
+    trial = np.empty(3, np.float32)
+    for v in range(max(y0, RADIUS), min(y1, H - RADIUS)):
+        start = RADIUS + ((RADIUS + v + colour) & 1)
+        for u in range(start, W - RADIUS, 2):
+            if not mask[v, u]:
+                continue
+            fu, fv = f32(u), f32(v)
+            mean, variance = reference_patch(grey, u, v, sources.A, colour_weight, patch)
+            w0, gu0, gv0, c0 = planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], planes[v, u, 3]
+            first, second = np.int64(pairs[v, u, 0]), np.int64(pairs[v, u, 1])
+            counter = np.uint64(v * W + u) * np.uint64(DRAWS)
+            for k in range(8 + draws):
+                if k < 8:
+                    found = _neighbour(planes, u, v, k, trial)
+                else:
+                    found = _perturbed(w0, gu0, gv0, K[0], limits, key, counter, k - 8, step, trial)
+                w, gu, gv = trial[0], trial[1], trial[2]
+                if not found or w < limits[0] or w > limits[1] or not slant_ok(w, gu, gv, fu, fv, K, MIN_COSINE):
+                    continue
+                slope = SAME_SLOPE * w0 / K[0]
+                if abs(w - w0) < SAME_DEPTH * w0 and abs(gu - gu0) < slope and abs(gv - gv0) < slope:
+                    continue
+                c = plane_cost(
+                    w, gu, gv, fu, fv, sources, W, H, patch, mean, variance, first, second, c0 + EARLY_MARGIN
+                )
+                if c < c0:
+                    w0, gu0, gv0, c0 = w, gu, gv, c
+                    first, second = _best_two(patch, S)
+            planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], planes[v, u, 3] = w0, gu0, gv0, c0
+            pairs[v, u, 0], pairs[v, u, 1] = first, second
+
+
+@kernel
+def _neighbour(planes, u, v, region, trial):  # type: ignore[no-untyped-def]
+    """The best plane of a region, continued to (u, v), into `trial`; False when the region is outside."""
+    H, W = planes.shape[:2]
+    nx, ny, nc = -1, -1, f32(1e9)
+    for k in range(REGION_START[region], REGION_START[region + 1]):
+        x, y = u + REGION_X[k], v + REGION_Y[k]
+        if x >= 0 and y >= 0 and x < W and y < H and planes[y, x, 3] < nc:
+            nx, ny, nc = x, y, planes[y, x, 3]
+    if nx < 0:
+        return False
+    trial[1], trial[2] = planes[ny, nx, 1], planes[ny, nx, 2]
+    trial[0] = planes[ny, nx, 0] + trial[1] * f32(u - nx) + trial[2] * f32(v - ny)
+    return True
+
+
+@kernel
+def _perturbed(w0, gu0, gv0, f, limits, key, counter, k, step, trial):  # type: ignore[no-untyped-def]
+    """The plane with a random change of depth, of slant, or of both in turn; small changes as often as large ones."""
+    at = counter + np.uint64(4 * k)
+    size = step * uniform(key, at)
+    size *= uniform(key, at + np.uint64(1))
+    trial[0], trial[1], trial[2] = w0, gu0, gv0
+    if k % 3 != 1:
+        trial[0] = w0 + (uniform(key, at + np.uint64(2)) - f32(0.5)) * size * (limits[1] - limits[0])
+    if k % 3 != 0:
+        angle = uniform(key, at + np.uint64(3)) * f32(2.0 * np.pi)
+        slope = SLOPE_SPAN * np.sqrt(size) * w0 / f
+        trial[1] += slope * np.cos(angle)
+        trial[2] += slope * np.sin(angle)
+    return True

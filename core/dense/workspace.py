@@ -1,0 +1,81 @@
+"""COLMAP's dense workspace, as its stereo fusion and CUDA PatchMatch read it."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import cv2  # noqa: F401  (before pycolmap: the other order aborts when a PNG is written)
+import numpy as np
+import pycolmap
+
+from core.dense.maps import DepthMap
+from core.dense.views import DenseView
+
+
+def write_workspace(workspace: Path, undistorted: Path, views: Sequence[DenseView]) -> None:
+    """Lay out ``images/``, ``sparse/``, ``stereo/`` and ``fusion.cfg`` for the given views.
+
+    The principal point in ``sparse/`` is moved by half a pixel: COLMAP's fusion (and its CUDA kernels) multiply whole
+    pixel indices with the inverse of K although K has its pixel centres at 0.5. Without the shift the fused
+    surface is off by half a pixel.
+    """
+    for folder in ("images", "sparse", "stereo/depth_maps", "stereo/normal_maps", "stereo/consistency_graphs"):
+        (workspace / folder).mkdir(parents=True, exist_ok=True)
+    model = pycolmap.Reconstruction(str(undistorted / "sparse"))
+    shift_principal_point(model, -0.5)
+    model.write(str(workspace / "sparse"))
+    for _, image in sorted(model.images.items()):
+        target = workspace / "images" / image.name
+        if not target.exists():
+            _link(undistorted / "images" / image.name, target)
+    names = [view.name for view in views]
+    (workspace / "stereo" / "fusion.cfg").write_text("".join(f"{name}\n" for name in names))
+
+
+def shift_principal_point(model: Any, offset_px: float) -> None:
+    """Move cx and cy of every PINHOLE camera of a pycolmap.Reconstruction."""
+    for camera in model.cameras.values():
+        params = np.array(camera.params)
+        params[2:4] += offset_px
+        camera.params = params
+
+
+def _link(source: Path, target: Path) -> None:
+    """Symbolic link, or a copy where links are not supported."""
+    try:
+        target.symlink_to(source.resolve())
+    except OSError:
+        shutil.copyfile(source, target)
+
+
+def write_maps(workspace: Path, name: str, found: DepthMap, kind: str = "geometric") -> None:
+    """Write one view's depth and normal map in COLMAP's format. Depth <= 0 means none."""
+    depth = np.ascontiguousarray(found.depth, dtype=np.float32)
+    valid = depth[depth > 0]
+    low, high = (float(valid.min()), float(valid.max())) if len(valid) else (0.0, 1.0)
+    stereo = workspace / "stereo"
+    pycolmap.DepthMap.from_array(depth, low, high).write(str(stereo / "depth_maps" / f"{name}.{kind}.bin"))
+    normals = np.ascontiguousarray(found.normal, dtype=np.float32)
+    pycolmap.NormalMap.from_array(normals).write(str(stereo / "normal_maps" / f"{name}.{kind}.bin"))
+
+
+def read_maps(workspace: Path, name: str, kind: str = "geometric") -> DepthMap:
+    """Read one view's maps; COLMAP keeps no cost, so it is 0 where there is a depth and 2 elsewhere."""
+    stereo = workspace / "stereo"
+    depth_map, normal_map = pycolmap.DepthMap(), pycolmap.NormalMap()
+    depth_map.read(str(stereo / "depth_maps" / f"{name}.{kind}.bin"))
+    normal_map.read(str(stereo / "normal_maps" / f"{name}.{kind}.bin"))
+    depth = np.maximum(np.asarray(depth_map.to_array(), dtype=np.float32), 0.0)
+    normal = np.asarray(normal_map.to_array(), dtype=np.float32)
+    cost = np.where(depth > 0, 0.0, 2.0).astype(np.float32)
+    return DepthMap(depth, normal, cost)
+
+
+def write_patch_match_config(workspace: Path, views: Iterable[DenseView]) -> Path:
+    """Write COLMAP's list of reference images and their sources; returns its path."""
+    path = workspace / "stereo" / "patch-match.cfg"
+    path.write_text("".join(f"{view.name}\n{', '.join(view.sources)}\n" for view in views))
+    return path

@@ -1,0 +1,52 @@
+"""Stage `undistort`: pinhole images, the PINHOLE model, and the plan of depth maps."""
+
+from __future__ import annotations
+
+import cv2
+import pycolmap
+
+from core.dense.cameras import choose_pinhole
+from core.dense.undistort import pinhole_model, undistort_map
+from core.dense.views import plan_views, sparse_views, write_views
+from core.errors import StageFailed
+from core.stage import StageResult, StageTask
+
+JPEG_QUALITY = 97
+
+
+def run(task: StageTask) -> StageResult:
+    """Write ``images/``, ``mask.png``, ``sparse/`` and ``views.json``; facts n_views, width, height, focal_px."""
+    settings = task.settings.dense
+    model = pycolmap.Reconstruction(str(task.input("extend") / "model"))
+    views = sparse_views(model)
+    plan = plan_views(views, settings)
+    if not plan:
+        raise StageFailed("no two registered images see the same points from different places", where="undistort")
+    needed = sorted({name for view in plan for name in (view.name, *view.sources)})
+    by_name = dict(zip(views.names, views.image_ids, strict=True))
+    camera = model.cameras[model.images[views.image_ids[0]].camera_id]
+    pinhole = choose_pinhole(camera, settings)
+    mapping = undistort_map(camera, pinhole)
+
+    sparse = task.out / "sparse"
+    sparse.mkdir()
+    pinhole_model(model, pinhole, [by_name[name] for name in needed]).write(str(sparse))
+    images = task.out / "images"
+    images.mkdir()
+    for done, name in enumerate(needed):
+        task.report(done, len(needed), name)
+        image = cv2.imread(str(task.input("frames") / "images" / name), cv2.IMREAD_COLOR)
+        if image is None:
+            raise StageFailed(f"frame {name} cannot be read", where=name)
+        cv2.imwrite(str(images / name), mapping.apply(image), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    cv2.imwrite(str(task.out / "mask.png"), mapping.inside.astype("uint8") * 255)
+    write_views(task.out / "views.json", plan)
+    return StageResult(
+        {
+            "n_views": len(plan),
+            "n_images": len(needed),
+            "width": pinhole.width,
+            "height": pinhole.height,
+            "focal_px": round(pinhole.focal_px, 3),
+        }
+    )

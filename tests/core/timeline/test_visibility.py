@@ -42,7 +42,7 @@ def test_hidden_outside_behind_and_seen() -> None:
 
 
 def test_the_tolerance_lets_through_what_lies_just_before() -> None:
-    shifted = PLACE + [0, 0, 0.05]
+    shifted = PLACE + np.array([0, 0, 0.05])
     blocked = sightings(shifted, NORMAL, [view(0, 0.0, 7.0)], Occlusion(VERTICES, FACES), 0.01)
     let_through = sightings(shifted, NORMAL, [view(0, 0.0, 7.0)], Occlusion(VERTICES, FACES), 0.1)
     assert (len(blocked), len(let_through)) == (0, 1)

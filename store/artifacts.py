@@ -18,6 +18,7 @@ from typing import IO, Any
 import fsspec
 
 from core.errors import BadInput
+from store.disk import sync_path
 
 _CHUNK = 1 << 20
 
@@ -98,7 +99,7 @@ class ArtifactStore:
                 stream.flush()
                 os.fsync(stream.fileno())
             part.replace(final)
-            sync_folder(final.parent)
+            sync_path(final.parent)
         except BaseException:
             part.unlink(missing_ok=True)
             raise
@@ -110,12 +111,3 @@ def _copy(read: IO[bytes], write: IO[bytes]) -> tuple[str, int]:
         digest.update(chunk)
         size += write.write(chunk)
     return digest.hexdigest(), size
-
-
-def sync_folder(folder: Path) -> None:
-    """Make the names in a local folder survive a power cut."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

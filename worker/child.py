@@ -26,7 +26,8 @@ from typing import Any, NoReturn
 from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
 from core.stage import StageResult, StageTask
-from worker.results import disk_is_full, seal
+from store.disk import disk_is_full
+from worker.results import seal
 
 _PR_SET_PDEATHSIG = 1
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)

@@ -44,9 +44,7 @@ class RunFolder:
         return self.hidden / "logs"
 
     def foreign_files(self) -> list[str]:
-        """Names of the contract that are taken by files this program did not put there."""
-        if self.database.exists():
-            return []
+        """Names of the contract that are taken; in a folder without a plan, by files of somebody else."""
         names = (*TABLES, *(output.path for output in OUTPUTS))
         return [name for name in names if (self.out / name).exists()]
 

@@ -19,12 +19,10 @@ from typing import Any
 from core.errors import DiskFull
 from core.fingerprint import canonical_json, digest_of, digest_of_file
 from core.stage import Facts
-from store.artifacts import sync_folder
+from store.disk import disk_is_full, sync_path
 
 MANIFEST = "result.json"
 _TEMP = ".tmp-"
-_MIN_FREE_BYTES = 1 << 20
-"""Native writers drop what does not fit without a word: a disk with less left than this has no whole result."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,7 @@ def seal(folder: Path, *, fingerprint: str, key: str, version: int, facts: Facts
     canonical_json(facts)
     files: dict[str, dict[str, Any]] = {}
     for path in sorted(p for p in folder.rglob("*") if p.is_file()):
-        _sync_file(path)
+        sync_path(path)
         name = path.relative_to(folder).as_posix()
         files[name] = {"size": path.stat().st_size, "sha256": digest_of_file(path)}
     if disk_is_full(folder):
@@ -65,23 +63,10 @@ def seal(folder: Path, *, fingerprint: str, key: str, version: int, facts: Facts
     manifest = Manifest(fingerprint, key.split("/", 1)[0], version, facts, files, digest, seconds, rss, key)
     path = folder / MANIFEST
     path.write_text(json.dumps(manifest.__dict__, sort_keys=True, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    _sync_file(path)
+    sync_path(path)
     for inner in (*(p for p in folder.rglob("*") if p.is_dir()), folder):
-        sync_folder(inner)
+        sync_path(inner)
     return manifest
-
-
-def disk_is_full(folder: Path) -> bool:
-    """True when what a stage wrote into this folder may not all have reached the disk."""
-    return shutil.disk_usage(folder).free < _MIN_FREE_BYTES
-
-
-def _sync_file(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 class ResultFolders:
@@ -111,7 +96,7 @@ class ResultFolders:
         if self.find(stage, fingerprint) is None:
             self._remove(final)
             temporary.rename(final)
-            sync_folder(final.parent)
+            sync_path(final.parent)
         self.discard(temporary)
         manifest = self.find(stage, fingerprint)
         if manifest is None:

@@ -30,8 +30,8 @@ check: lint ## lint, types, layers and unit tests (minutes)
 test: lint ## everything, with the runs on the sample
 	$(BIN)/pytest
 
-bench-speed: setup ## time this project's parts beside other programs
-	$(BIN)/bladeatlas-bench speed
+bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs
+	$(BIN)/bladeatlas-bench speed $(RESULT)
 
 bench-accuracy: setup ## score RESULT (default out/demo) against TRUTH (default samples/truth)
 	$(BIN)/bladeatlas-bench accuracy $(RESULT) $(TRUTH)

@@ -8,7 +8,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from core.errors import BladeAtlasError
+from bench.speed import command as speed
+from core.errors import BadInput, BladeAtlasError
 
 
 def _accuracy(arguments: argparse.Namespace) -> None:
@@ -30,6 +31,9 @@ def make_parser() -> argparse.ArgumentParser:
     accuracy.add_argument("truth", type=Path, metavar="TRUTH", help="folder of cameras.json, defects.json, surface.ply")
     accuracy.add_argument("--json", action="store_true", help="print JSON instead of a table")
     accuracy.set_defaults(run=_accuracy)
+    speed_parser = commands.add_parser("speed", help="time the parts of a finished run beside other programs")
+    speed.add_arguments(speed_parser)
+    speed_parser.set_defaults(run=speed.command)
     return parser
 
 
@@ -40,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments.run(arguments)
     except BladeAtlasError as error:
         print(f"error: {error.message}", file=sys.stderr)
-        return 2 if error.code == "bad_input" else 1
+        return 2 if isinstance(error, BadInput) else 1
     return 0
 
 

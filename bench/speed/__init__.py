@@ -1,0 +1,1 @@
+"""How fast the parts are, each beside the usual way of doing it, in one process and one run."""

@@ -73,7 +73,9 @@ class FeatureSettings(Group):
         1600, "longer side above which frames are scaled down (never up)", unit="px", source="thesis", ge=64
     )
     scale: float = option(1.0, "further scale of the frame before detection", source="draft uses 0.5", gt=0, le=1)
-    subpixel: bool = option(False, "DISK: refine keypoints by a parabola through the heat map", source="measured")
+    subpixel: bool = option(
+        True, "DISK: refine keypoints by a parabola through the heat map", source="measured; thesis off"
+    )
     blade_masks_only: bool = option(False, "drop keypoints outside the annotated blade masks", source="off")
 
 

@@ -51,6 +51,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "frames.time_rule": "average_rate",
         "camera.focal": "colmap",
         "camera.principal_point": "crop",
+        "features.subpixel": False,
         "matching.method": "lightglue",
         "verification.max_error_px": 4.0,
         "verification.min_inlier_share": 0.0,

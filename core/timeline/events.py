@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.mapping.rows import DetectionRow
 from core.timeline.clusters import Cluster
-from core.timeline.visibility import Sighting
+
+if TYPE_CHECKING:  # it loads the ray caster, which whoever writes tables does not need
+    from core.timeline.visibility import Sighting
 
 F64 = NDArray[np.float64]
 

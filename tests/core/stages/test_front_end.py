@@ -1,0 +1,129 @@
+"""Stages `features`, `matches` and `graph` in a row, on a small synthetic clip."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pycolmap
+import pytest
+
+from core.errors import Cancelled, StageFailed
+from core.features.io import read_features
+from core.settings import make_settings
+from core.stage import StageTask
+from core.stages import features, graph, matches
+from core.viewgraph import read_table
+from tests.core.making_frames import SIZE, frames_folder
+
+OPTIONS = {"features.max_keypoints": 400, "matching.method": "mutual_nearest", "matching.window": 2}
+
+
+def _task(
+    key: str, out: Path, inputs: dict[str, Path], options: dict[str, Any] | None = None, **more: Any
+) -> StageTask:
+    out.mkdir(parents=True, exist_ok=True)
+    settings = make_settings(options={**OPTIONS, **(options or {})})
+    args = {name: more.pop(name) for name in ("start", "end") if name in more}
+    return StageTask(key, args, settings, inputs, {}, Path("video.mp4"), None, out, **more)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with every result: 5 search frames, one added between frames 1 and 2, two chunks."""
+    root = tmp_path_factory.mktemp("front")
+    frames_folder(root / "frames", ["search"] * 5 + ["added"], [0, 1, 2, 3, 4, 1.5])
+    (root / "camera").mkdir()
+    camera = {"model": "OPENCV_FISHEYE", "width": SIZE[0], "height": SIZE[1], "params": [150, 150, 100, 80, 0, 0, 0, 0]}
+    (root / "camera" / "camera.json").write_text(json.dumps(camera))
+    inputs = {"frames": root / "frames", "camera": root / "camera"}
+    for chunk, (start, end) in enumerate([(0, 3), (3, 6)]):
+        key = f"features/{chunk:03d}"
+        features.run(_task(key, root / key, dict(inputs), start=start, end=end))
+        inputs[key] = root / key
+    for chunk, (start, end) in enumerate([(0, 3), (3, 6)]):
+        key = f"matches/{chunk:03d}"
+        matches.run(_task(key, root / key, dict(inputs), start=start, end=end))
+        inputs[key] = root / key
+    graph.run(_task("graph", root / "graph", dict(inputs)))
+    return root
+
+
+def _inputs(run: Path) -> dict[str, Path]:
+    keys = ("frames", "camera", "features/000", "features/001", "matches/000", "matches/001")
+    return {key: run / key for key in keys}
+
+
+def test_every_frame_has_features_in_its_chunk(run: Path) -> None:
+    assert sorted(path.name for path in (run / "features" / "001").iterdir()) == ["0003.npz", "0004.npz", "0005.npz"]
+    found = read_features(run / "features" / "000" / "0001.npz")
+    assert 50 < len(found) <= 400
+    assert (found.keypoints > 0).all()
+    assert (found.keypoints < SIZE).all()
+
+
+def test_graph_holds_all_pairs_and_their_motion(run: Path) -> None:
+    table = read_table(run / "graph" / "graph.npz")
+    expected = [(0, 1), (0, 2), (0, 5), (1, 2), (1, 3), (1, 5), (2, 3), (2, 4), (2, 5), (3, 4), (3, 5)]
+    assert [tuple(pair) for pair in table.pairs.tolist()] == expected
+    assert table.verified.all()
+    first = read_features(run / "features" / "000" / "0000.npz").keypoints
+    second = read_features(run / "features" / "000" / "0001.npz").keypoints
+    rows = table.inliers[table.offsets[0] : table.offsets[1]]
+    moved = second[rows[:, 1]] - first[rows[:, 0]]
+    np.testing.assert_allclose(np.median(moved, axis=0), [-6, 0], atol=0.2)
+
+
+def test_database_is_complete(run: Path) -> None:
+    with pycolmap.Database.open(run / "graph" / "database.db") as database:
+        assert database.num_images() == 6
+        assert database.num_verified_image_pairs() == 11
+        assert database.read_image(6).name == "0005.jpg"
+
+
+def test_facts_are_plain_and_repeatable(run: Path, tmp_path: Path) -> None:
+    task = _task("matches/000", tmp_path / "again", _inputs(run), start=0, end=3)
+    facts = matches.run(task).facts
+    assert json.loads(json.dumps(facts)) == facts
+    assert facts["n_pairs"] == 9
+    again = (tmp_path / "again" / "pairs.npz").read_bytes()
+    assert again == (run / "matches" / "000" / "pairs.npz").read_bytes()
+
+
+def test_blade_masks_drop_the_background(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "annotations").mkdir()
+    # Source pixels 10..110 x 20..180 of frame 0 (source index 0), which is the crop's left half; frame 1 has none.
+    polygon = [[10 / 250, 20 / 200], [110 / 250, 20 / 200], [110 / 250, 180 / 200], [10 / 250, 180 / 200]]
+    masks = {"0": [{"label": "blade", "polygon": polygon}]}
+    (tmp_path / "annotations" / "masks.json").write_text(json.dumps(masks))
+    inputs = {"frames": run / "frames", "annotations": tmp_path / "annotations"}
+    options = {"features.blade_masks_only": True}
+    features.run(_task("features/000", tmp_path / "out", inputs, options, start=0, end=2))
+    assert read_features(tmp_path / "out" / "0000.npz").keypoints[:, 0].max() <= 101
+    assert read_features(tmp_path / "out" / "0001.npz").keypoints[:, 0].max() > 150
+
+
+def test_cancelling_stops_before_the_next_frame(run: Path, tmp_path: Path) -> None:
+    seen: list[float] = []
+    task = _task(
+        "features/000",
+        tmp_path / "out",
+        {"frames": run / "frames"},
+        start=0,
+        end=3,
+        progress=lambda fraction, message: seen.append(fraction),
+        cancelled=lambda: len(seen) >= 2,
+    )
+    with pytest.raises(Cancelled):
+        features.run(task)
+    assert seen == [0, pytest.approx(1 / 3)]
+    assert len(list((tmp_path / "out").iterdir())) == 2
+
+
+def test_a_missing_chunk_is_named(run: Path, tmp_path: Path) -> None:
+    inputs = _inputs(run)
+    del inputs["features/001"]
+    with pytest.raises(StageFailed, match="frame 5 has no features"):
+        matches.run(_task("matches/000", tmp_path / "out", inputs, start=0, end=3))

@@ -12,11 +12,13 @@ from scipy.spatial import cKDTree
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
+I64 = NDArray[np.int64]
 U8 = NDArray[np.uint8]
 
 DEFECT_RGB = (255, 0, 0)
 BASE_RGB = (180, 180, 180)
 """Base colour of a mesh that has none."""
+_FEW_POINTS = 16
 
 
 @dataclass(frozen=True)
@@ -62,20 +64,25 @@ def vertex_weights(vertices: F64, points: F64, radius: float, sigma: float, thre
         hit = np.isfinite(distance)
         weight[near[hit]] = _decay(distance[hit], sigma)
         point[near[hit]] = row[hit]
-    _color_lone_points(vertices, points, radius, sigma, threads, weight, point)
+    # A point that is the nearest of some vertex has that vertex in its ball; the others may be alone.
+    others = np.setdiff1d(np.arange(len(points)), point)
+    vertex, distance = _nearest_vertices(vertices, points[others], threads)
+    for k in np.flatnonzero(distance > radius):
+        value = _decay(distance[k : k + 1], sigma)[0]
+        if value > weight[vertex[k]] or point[vertex[k]] < 0:
+            weight[vertex[k]], point[vertex[k]] = value, others[k]
     return Coloring(weight, point)
 
 
-def _color_lone_points(
-    vertices: F64, points: F64, radius: float, sigma: float, threads: int, weight: F32, point: I32
-) -> None:
-    """Points with an empty ball act on their nearest vertex, with the (tiny) weight of its distance."""
-    tree: Any = cKDTree(vertices, balanced_tree=False, compact_nodes=False)
-    distance, vertex = tree.query(points, workers=threads)
-    for row in np.flatnonzero(distance > radius):
-        value = _decay(distance[row : row + 1], sigma)[0]
-        if value > weight[vertex[row]] or point[vertex[row]] < 0:
-            weight[vertex[row]], point[vertex[row]] = value, row
+def _nearest_vertices(vertices: F64, points: F64, threads: int) -> tuple[I64, F64]:
+    """Nearest vertex of each point and its distance; a tree over the vertices pays off for more than a few points."""
+    if len(points) > _FEW_POINTS:
+        tree: Any = cKDTree(vertices, balanced_tree=False, compact_nodes=False)
+        distance, vertex = tree.query(points, workers=threads)
+        return vertex, distance
+    squared = [((vertices - point) ** 2).sum(axis=1) for point in points]
+    nearest = np.array([each.argmin() for each in squared], dtype=np.int64)
+    return nearest, np.linalg.norm(vertices[nearest] - points, axis=1)
 
 
 def _decay(distance: F64, sigma: float) -> F32:

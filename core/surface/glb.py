@@ -45,11 +45,12 @@ def write_glb(path: Path, mesh: Mesh, unit: str = "model") -> None:
 
 def vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
     """(n, 3) area-weighted unit normals of the vertices; (0, 0, 1) where no face gives one."""
-    corners = mesh.vertices[mesh.faces]
-    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+    face = np.cross(b - a, c - a)
     total = np.zeros_like(mesh.vertices, dtype=np.float64)
     for axis in range(3):
-        total[:, axis] = np.bincount(mesh.faces.ravel(), np.repeat(face[:, axis], 3), minlength=len(total))
+        for corner in range(3):
+            total[:, axis] += np.bincount(mesh.faces[:, corner], face[:, axis], minlength=len(total))
     return _unit_rows(total)
 
 

@@ -71,25 +71,31 @@ def read_mesh(path: Path) -> Mesh:
 
 def write_mesh(path: Path, mesh: Mesh, comments: Sequence[str] | None = None) -> None:
     """Write a mesh as binary little-endian PLY: float positions, the mesh's comments unless others are given."""
-    elements = [PlyElement.describe(_vertex_table(mesh), "vertex")]
-    table = np.empty(len(mesh.faces), dtype=[("vertex_indices", "<i4", (3,))])
-    table["vertex_indices"] = mesh.faces
-    elements.append(PlyElement.describe(table, "face", len_types={"vertex_indices": "u1"}))
-    _write(path, elements, mesh.comments if comments is None else comments)
+    vertices = _vertex_table(mesh)
+    described = np.empty(len(mesh.faces), dtype=[("vertex_indices", "<i4", (3,))])
+    elements = [
+        PlyElement.describe(vertices, "vertex"),
+        PlyElement.describe(described, "face", len_types={"vertex_indices": "u1"}),
+    ]
+    # plyfile writes lists one by one, which takes seconds for millions of faces: it gives only the header here.
+    header = PlyData(elements, text=False, byte_order="<", comments=list(_comments(mesh, comments))).header
+    packed = np.empty(len(mesh.faces), dtype=[("count", "u1"), ("vertex_indices", "<i4", (3,))])
+    packed["count"], packed["vertex_indices"] = 3, mesh.faces
+    with path.open("wb") as stream:
+        stream.write(header.encode("ascii") + b"\n")
+        stream.write(vertices.tobytes())
+        stream.write(packed.tobytes())
 
 
 def write_cloud(path: Path, cloud: Mesh, comments: Sequence[str] | None = None) -> None:
     """Write the vertices alone, as binary little-endian PLY."""
-    _write(
-        path,
-        [PlyElement.describe(_vertex_table(cloud), "vertex")],
-        cloud.comments if comments is None else comments,
-    )
-
-
-def _write(path: Path, elements: list[Any], comments: Sequence[str]) -> None:
+    element = PlyElement.describe(_vertex_table(cloud), "vertex")
     with path.open("wb") as stream:
-        PlyData(elements, text=False, byte_order="<", comments=list(comments)).write(stream)
+        PlyData([element], text=False, byte_order="<", comments=list(_comments(cloud, comments))).write(stream)
+
+
+def _comments(mesh: Mesh, comments: Sequence[str] | None) -> Sequence[str]:
+    return mesh.comments if comments is None else comments
 
 
 def _read(path: Path) -> Any:

@@ -29,6 +29,8 @@ MAX_ITERATIONS = 100
 
 MAX_SIGMA_PX = 3.0
 """The principal point is well determined when both its posterior sigmas are below this."""
+MIN_SHIFT_SIGMAS = 3.0
+"""A shift within this many sigmas says nothing against the start, which then stays."""
 MAX_SHIFT_SHARE = 0.1
 """A principal point farther from its start than this share of the longer image side is not believed."""
 MIN_IMAGES = 10
@@ -45,7 +47,8 @@ class PrincipalPoint:
 
     refined: bool
     reason: str
-    """``kept``, or why not: ``off``, ``few_images``, ``no_covariance``, ``uncertain``, ``implausible``, ``no_gain``."""
+    """``kept``, or why not: ``off``, ``few_images``, ``no_covariance``, ``uncertain``, ``insignificant``,
+    ``implausible``, ``no_gain``."""
     sigma_px: tuple[float, float] | None = None
     """Posterior standard deviations of cx and cy, scaled by the residuals."""
     shift_px: tuple[float, float] | None = None
@@ -120,6 +123,8 @@ def free_principal_point(model: Any, threads: int = 1) -> PrincipalPoint:
     reason = "kept"
     if (sigma > MAX_SIGMA_PX).any():
         reason = "uncertain"
+    elif (np.abs(shift) < MIN_SHIFT_SIGMAS * sigma).all():
+        reason = "insignificant"
     elif (np.abs(shift) > MAX_SHIFT_SHARE * max(camera.width, camera.height)).any():
         reason = "implausible"
     elif cost_after >= cost_before:

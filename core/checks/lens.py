@@ -1,0 +1,61 @@
+"""Is the lens found one that exists: field of view, and a distortion that does not fold the image."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.flags import Flag
+
+MIN_FOV_DEG = 15.0
+MAX_FOV_DEG = 200.0
+MAX_THETA = 2 * np.pi
+"""A fisheye polynomial is followed up to here: beyond any lens, so that a far too short focal length is no fold."""
+
+
+def fisheye_radius(theta: NDArray[np.float64], distortion: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``theta (1 + k1 theta^2 + ... + k4 theta^8)``: distance from the principal point over the focal length."""
+    square = theta**2
+    scale = np.ones_like(theta)
+    for power, k in enumerate(distortion, start=1):
+        scale = scale + k * square**power
+    return np.asarray(theta * scale)
+
+
+def viewing_angle(radius: float, distortion: NDArray[np.float64]) -> float | None:
+    """Angle off the axis (radians) at which the polynomial reaches `radius`; None when it turns back before."""
+    theta = np.linspace(0.0, MAX_THETA, 8001)
+    r = fisheye_radius(theta, distortion)
+    reached = np.flatnonzero(r >= radius)
+    folds = np.flatnonzero(np.diff(r) <= 0)
+    if not len(reached) or (len(folds) and folds[0] < reached[0]):
+        return None
+    return float(np.interp(radius, r[: reached[0] + 1], theta[: reached[0] + 1]))
+
+
+def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Flag]:
+    """Flags of an OPENCV_FISHEYE camera.
+
+    Args:
+        width: of the image, px.
+        height: of the image, px.
+        params: (8,) fx, fy, cx, cy, k1..k4.
+
+    Returns:
+        `distortion_implausible` when the image's farthest corner lies beyond the fold;
+        `focal_implausible` when the field of view across the width is outside 15-200 degrees.
+    """
+    fx, fy, cx, cy = params[:4]
+    distortion = params[4:]
+    flags = []
+    corner = np.hypot(max(cx, width - cx) / fx, max(cy, height - cy) / fy)
+    if viewing_angle(float(corner), distortion) is None:
+        flags.append(Flag("distortion_implausible", "warning", float(np.abs(distortion).max()), None, "camera"))
+    sides = [viewing_angle(float(side / fx), distortion) for side in (cx, width - cx)]
+    # Where the polynomial folds, its linear part still tells the field of view.
+    found = [side / fx if angle is None else angle for side, angle in zip((cx, width - cx), sides, strict=True)]
+    fov = float(np.degrees(sum(found)))
+    if fov < MIN_FOV_DEG or fov > MAX_FOV_DEG:
+        threshold = MIN_FOV_DEG if fov < MIN_FOV_DEG else MAX_FOV_DEG
+        flags.append(Flag("focal_implausible", "warning", fov, threshold, "field of view across the crop, degrees"))
+    return flags

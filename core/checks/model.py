@@ -1,0 +1,57 @@
+"""All checks of a sparse model, gathered from COLMAP's objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.checks.extent import check_coverage, check_points, check_reprojection
+from core.checks.lens import check_lens
+from core.checks.parallax import largest_angle_deg, model_parallax
+from core.checks.rotations import check_rotations, disagreement, measured_rotations
+from core.flags import Flag
+from core.sparse.mapper import ModelStats
+
+SAMPLED_POINTS = 2000
+
+
+def check_model(model: Any, stats: ModelStats, graph: Mapping[str, NDArray[Any]], n_frames: int) -> list[Flag]:
+    """Flags of a model (`pycolmap.Reconstruction`, image_id = index + 1).
+
+    Args:
+        model: to judge.
+        stats: of the same model.
+        graph: arrays of ``graph.npz``.
+        n_frames: frames that took part.
+    """
+    ids = sorted(model.reg_image_ids())
+    frames = np.array([image_id - 1 for image_id in ids], np.int64)
+    rotations = [model.image(image_id).cam_from_world().rotation.matrix() for image_id in ids]
+    found = disagreement(measured_rotations(graph), frames, np.array(rotations).reshape(-1, 3, 3))
+    camera = next(iter(model.cameras.values()))
+    flags = [
+        check_rotations(found),
+        model_parallax(point_angles_deg(model)),
+        check_points(stats.points3D, stats.registered_images),
+        check_coverage(stats.registered_images, n_frames),
+        check_reprojection(stats.mean_reprojection_error_px),
+        *check_lens(int(camera.width), int(camera.height), np.array(camera.params)),
+    ]
+    return [flag for flag in flags if flag is not None]
+
+
+def point_angles_deg(model: Any, count: int = SAMPLED_POINTS) -> NDArray[np.float64]:
+    """(n,) largest angle between the views of a point, for at most `count` points spread over the ids."""
+    ids = np.array(sorted(model.point3D_ids()))
+    if len(ids) > count:
+        ids = ids[np.linspace(0, len(ids) - 1, count).round().astype(int)]
+    centers = {image_id: model.image(image_id).projection_center() for image_id in model.reg_image_ids()}
+    angles = []
+    for point_id in ids:
+        point = model.point3D(int(point_id))
+        views = sorted({element.image_id for element in point.track.elements})
+        angles.append(largest_angle_deg(point.xyz, np.array([centers[view] for view in views])))
+    return np.array(angles)

@@ -1,0 +1,39 @@
+"""Stage `confirm`: the winner mapped again from scratch with COLMAP's bundle adjustment."""
+
+from __future__ import annotations
+
+import pycolmap
+
+from core.sparse.cases import Case
+from core.sparse.confirm import confirmed_or_searched
+from core.sparse.mapper import model_stats
+from core.stage import StageResult, StageTask
+
+
+def run(task: StageTask) -> StageResult:
+    """Write the model to go on with; the searched one as it is when `model.confirm` is off."""
+    winner = task.facts["reduce_refine"]
+    model, kept = pycolmap.Reconstruction(task.input("reduce_refine") / "model"), "searched"
+    if task.settings.model.confirm:
+        # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
+        case = Case(
+            task.input("graph"), int(winner["start"]), int(winner["end"]), task.settings.mapper, task.settings.seed
+        )
+        model, kept = confirmed_or_searched(
+            case, model, lambda registered, offered: task.report(registered, offered, f"{registered} of {offered}")
+        )
+    folder = task.out / "model"
+    folder.mkdir()
+    model.write_binary(folder)
+    stats = model_stats(model)
+    return StageResult(
+        {
+            "name": winner["best"],
+            "registered_images": stats.registered_images,
+            "points3D": stats.points3D,
+            "mean_reprojection_error_px": stats.mean_reprojection_error_px,
+            "median_reprojection_error_px": stats.median_reprojection_error_px,
+            "start_mode": "scratch" if kept == "confirmed" else "searched",
+            "kept": kept,
+        }
+    )

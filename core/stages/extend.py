@@ -1,0 +1,86 @@
+"""Stage `extend`: the rest of the frames, the final bundle adjustment, and the checks of the model."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pycolmap
+
+from core.checks.model import check_model
+from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
+from core.sparse.extend import MIN_MATCHES, register_rest
+from core.sparse.mapper import mapper_options, model_stats, open_cache
+from core.stage import Facts, StageResult, StageTask
+
+
+def run(task: StageTask) -> StageResult:
+    """Write the final model, the list of its frames and what speaks against it."""
+    graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
+    settings = task.settings.model
+    model = pycolmap.Reconstruction(task.input("confirm") / "model")
+    if settings.register_rest:
+        model = register_rest(
+            graph,
+            model,
+            n_frames,
+            task.settings.mapper,
+            seed=task.settings.seed,
+            progress=lambda registered, offered: task.report(0.5 * registered, offered, f"{registered} registered"),
+        )
+    adjustment = None
+    if settings.final_adjustment:
+        adjustment = _adjust(task, model)
+        model = adjustment.model
+    folder = task.out / "model"
+    folder.mkdir()
+    model.write_binary(folder)
+    indices = [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())]
+    (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
+    with np.load(graph / "graph.npz") as arrays:
+        return StageResult(_facts(model, adjustment, dict(arrays), n_frames))
+
+
+def _adjust(task: StageTask, model: Any) -> Adjustment:
+    names = {model.image(image_id).name for image_id in model.reg_image_ids()}
+    return adjust(
+        model,
+        open_cache(task.input("graph") / "database.db", names, MIN_MATCHES),
+        mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
+        refine_principal_point=task.settings.model.refine_principal_point == "auto",
+        threads=task.threads,
+        progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
+    )
+
+
+def _facts(model: Any, adjustment: Adjustment | None, graph: dict[str, Any], n_frames: int) -> Facts:
+    stats = model_stats(model)
+    params = np.array(next(iter(model.cameras.values())).params)
+    return {
+        "registered_images": stats.registered_images,
+        "points3D": stats.points3D,
+        "mean_reprojection_error_px": stats.mean_reprojection_error_px,
+        "median_reprojection_error_px": stats.median_reprojection_error_px,
+        "track_length": stats.mean_track_length,
+        "focal_px": float(params[:2].mean()),
+        "principal_point_px": params[PRINCIPAL_POINT].tolist(),
+        "principal_point_refined": adjustment is not None and adjustment.principal_point.refined,
+        "adjustment": None if adjustment is None else _adjustment_facts(adjustment),
+        "checks": [flag.to_dict() for flag in check_model(model, stats, graph, n_frames)],
+    }
+
+
+def _adjustment_facts(adjustment: Adjustment) -> Facts:
+    point = adjustment.principal_point
+    return {
+        "rounds": adjustment.rounds,
+        "stable": adjustment.stable,
+        "error_before_px": adjustment.error_before_px,
+        "error_after_px": adjustment.error_after_px,
+        "principal_point": {
+            "decision": point.reason,
+            "sigma_px": None if point.sigma_px is None else list(point.sigma_px),
+            "shift_px": None if point.shift_px is None else list(point.shift_px),
+        },
+    }

@@ -1,0 +1,43 @@
+import numpy as np
+import pytest
+
+from core.checks.extent import check_coverage, check_points, check_reprojection
+from core.checks.lens import check_lens, fisheye_radius, viewing_angle
+
+
+def codes(flags):
+    return [flag.code for flag in flags]
+
+
+def test_limits_of_what_a_model_holds():
+    assert check_points(54478, 180) is None
+    assert check_points(100, 60).code == "few_points"
+    assert check_coverage(180, 360) is None
+    assert check_coverage(179, 360).code == "coverage_low"
+    assert check_coverage(0, 0).code == "coverage_low"
+    assert check_reprojection(1.1958) is None
+    assert check_reprojection(2.5).value == 2.5
+
+
+def test_the_lens_of_a_borescope_is_plausible():
+    assert check_lens(787, 525, np.array([520, 520, 442, 281, 0.04, 0.005, 0, 0.0])) == []
+
+
+@pytest.mark.parametrize(
+    ("focal", "code"), [(4000.0, ["focal_implausible"]), (150.0, ["focal_implausible"]), (520.0, [])]
+)
+def test_field_of_view_outside_of_15_to_200_degrees(focal, code):
+    assert codes(check_lens(787, 525, np.array([focal, focal, 393, 262, 0, 0, 0, 0.0]))) == code
+
+
+def test_a_polynomial_that_turns_back_inside_the_image_is_flagged():
+    flags = check_lens(540, 360, np.array([566.0, 538, 270, 180, 0.6, -0.55, -8.8, 5.0]))
+    assert codes(flags) == ["distortion_implausible"]
+
+
+def test_viewing_angle_inverts_the_polynomial():
+    distortion = np.array([0.04, 0.005, -0.002, 0.0])
+    for theta in (0.0, 0.3, 0.9):
+        radius = float(fisheye_radius(np.array([theta]), distortion)[0])
+        assert viewing_angle(radius, distortion) == pytest.approx(theta, abs=1e-5)
+    assert viewing_angle(3.0, np.array([-0.5, 0, 0, 0.0])) is None

@@ -1,0 +1,38 @@
+"""The documents say what the code writes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from core.flags import FLAG_CODES
+from core.mapping.rows import DETECTION_COLUMNS, REASONS
+from core.report.build import build_report
+from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS
+from core.timeline.events import TIMELINE_COLUMNS
+from tests.core.making_record import full_record
+
+DOCS = Path(__file__).parents[3] / "docs"
+OUTPUTS = (DOCS / "outputs.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("columns", [FRAME_COLUMNS, CASE_COLUMNS, DETECTION_COLUMNS, TIMELINE_COLUMNS])
+def test_columns_are_documented_in_their_order(columns: tuple[str, ...]) -> None:
+    assert f"`{', '.join(columns)}`" in OUTPUTS.replace("\n", " ")
+
+
+def test_reasons_are_documented() -> None:
+    assert set(REASONS) <= set(re.findall(r"^\| `(\w+)` \|", OUTPUTS, re.MULTILINE))
+
+
+def test_keys_of_the_two_objects_are_documented() -> None:
+    report = build_report(full_record())
+    named = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]*)`", OUTPUTS))))
+    assert set(report.summary) | set(report.quality) <= named
+
+
+def test_flags_are_documented() -> None:
+    documented = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", (DOCS / "flags.md").read_text("utf-8"), re.MULTILINE))
+    assert documented == dict(FLAG_CODES)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.dense.patchmatch.jit import kernel
+from core.dense.patchmatch.jit import inlined, kernel
 
 f32 = np.float32
 F32 = NDArray[np.float32]
@@ -82,6 +82,20 @@ class Patch(NamedTuple):
     """(best,) smallest costs over the sources, ascending."""
     order: NDArray[np.int32]
     """(best,) the sources they belong to."""
+    trial: F32
+    """(3,) the plane under test."""
+
+
+def scratch(n_sources: int, best: int) -> Patch:
+    """Room for one thread's patches; kernels allocate nothing themselves."""
+    return Patch(
+        np.empty(TAPS, np.float32),
+        np.empty(TAPS, np.float32),
+        np.empty((n_sources, 3), np.float32),
+        np.empty(best, np.float32),
+        np.empty(best, np.int32),
+        np.empty(3, np.float32),
+    )
 
 
 @kernel
@@ -97,7 +111,7 @@ def pack(grey, out):  # type: ignore[no-untyped-def]
             out[y * w + x] = low | high
 
 
-@kernel
+@inlined
 def reference_patch(grey, u, v, A, colour_weight, patch):  # type: ignore[no-untyped-def]
     """Fill `patch` for pixel (u, v) of the (h, w) uint8 reference; returns weighted mean and variance.
 
@@ -124,7 +138,7 @@ def reference_patch(grey, u, v, A, colour_weight, patch):  # type: ignore[no-unt
     return mean, second * scale - mean * mean
 
 
-@kernel
+@inlined
 def patch_cost(packed, base, W, x, y, xu, yu, xv, yv, patch, mean, variance):  # type: ignore[no-untyped-def]
     """1 - NCC of the reference patch and the source patch at (x, y) with Jacobian (xu, xv; yu, yv)."""
     weight, weighted = patch.weight, patch.weighted
@@ -134,7 +148,7 @@ def patch_cost(packed, base, W, x, y, xu, yu, xv, yv, patch, mean, variance):  #
         py = y + yu * DX[i] + yv * DY[i]
         ix, iy = np.int32(px), np.int32(py)
         fx, fy = px - f32(ix), py - f32(iy)
-        block = packed[np.uint32(base + iy * W + ix)]
+        block = packed[np.uint32(np.int32(base) + iy * np.int32(W) + ix)]
         a = f32(np.int32(block & np.uint32(255)))
         b = f32(np.int32((block >> np.uint32(8)) & np.uint32(255)))
         c = f32(np.int32((block >> np.uint32(16)) & np.uint32(255)))
@@ -148,7 +162,7 @@ def patch_cost(packed, base, W, x, y, xu, yu, xv, yv, patch, mean, variance):  #
     return f32(1) - (s12 - s1 * mean) / np.sqrt(source_variance * (variance + NOISE_VARIANCE))
 
 
-@kernel
+@inlined
 def view_cost(s, w, gu, gv, u, v, sources, W, H, patch, mean, variance):  # type: ignore[no-untyped-def]
     """Cost of a plane at pixel (u, v) in source s: 1 - NCC plus the weighted forward-backward error."""
     A, b, q = sources.A, sources.b, patch.q
@@ -169,7 +183,7 @@ def view_cost(s, w, gu, gv, u, v, sources, W, H, patch, mean, variance):  # type
     return cost
 
 
-@kernel
+@inlined
 def forward_backward(s, x, y, u, v, sources):  # type: ignore[no-untyped-def]
     """Distance in px between (u, v) and the pixel seen from where source s sees its own surface at (x, y); capped."""
     inverse = sources.inverse_depth[s, np.int32(y + f32(0.5)), np.int32(x + f32(0.5))]
@@ -185,7 +199,7 @@ def forward_backward(s, x, y, u, v, sources):  # type: ignore[no-untyped-def]
     return min(np.sqrt(du * du + dv * dv), MAX_GEOMETRIC_ERROR)
 
 
-@kernel
+@inlined
 def plane_cost(w, gu, gv, u, v, sources, W, H, patch, mean, variance, first, second, limit):  # type: ignore[no-untyped-def]
     """Mean cost over the best sources, so that a highlight or an occlusion in one does not decide.
 
@@ -218,7 +232,7 @@ def plane_cost(w, gu, gv, u, v, sources, W, H, patch, mean, variance, first, sec
     return total / f32(best)
 
 
-@kernel
+@inlined
 def _kth_other(k, first, second):  # type: ignore[no-untyped-def]
     """The source at place k >= 2 when `first` and `second` come first and the rest keep their order."""
     low, high = min(first, second), max(first, second)

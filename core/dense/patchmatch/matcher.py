@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.dense.cameras import Pinhole, Pose
-from core.dense.patchmatch.kernels import RADIUS, Sources, pack
+from core.dense.patchmatch.kernels import RADIUS, Patch, Sources, pack, scratch
 from core.dense.patchmatch.planes import upsample
 from core.dense.patchmatch.sweep import score_rows, sweep_rows
 
@@ -80,9 +80,7 @@ def relate(
         shift.append(-K @ R.T @ t)
     maps = np.zeros((len(sources), 1, 1)) if inverse_depths is None else np.stack(list(inverse_depths))
     grey = np.concatenate(list(images))
-    return Sources(
-        _f32(A), _f32(b), grey, _f32(maps), _f32(back), _f32(shift), np.float32(consistency)
-    )
+    return Sources(_f32(A), _f32(b), grey, _f32(maps), _f32(back), _f32(shift), np.float32(consistency))
 
 
 def _f32(values: Any) -> F32:
@@ -111,10 +109,10 @@ class Matcher:
         """
         pairs = np.zeros((*planes.shape[:2], 2), np.uint8)
         pairs[..., 1] = min(1, len(self.sources.A) - 1)
-        weight, best = _colour_weight(), self._best()
+        weight = _colour_weight()
 
         def work(y0: int, y1: int) -> None:
-            score_rows(planes, pairs, self.grey, self.mask, self.sources, best, weight, y0, y1)
+            score_rows(planes, pairs, self.grey, self.mask, self.sources, self._scratch(), weight, y0, y1)
 
         self._over_rows(work)
         return pairs
@@ -124,19 +122,19 @@ class Matcher:
         K = self.pinhole.index_matrix()
         lens = np.array([K[0, 0], K[0, 2], K[1, 2]], np.float32)
         limits = np.array(self.limits, np.float32)
-        weight, best, size = _colour_weight(), self._best(), np.float32(step)
+        weight, size = _colour_weight(), np.float32(step)
 
         def work(colour: int, key: Any, y0: int, y1: int) -> None:
             sweep_rows(
-                planes, pairs, self.grey, self.mask, self.sources, best, weight,
+                planes, pairs, self.grey, self.mask, self.sources, self._scratch(), weight,
                 lens, limits, colour, key, size, draws, y0, y1,
             )  # fmt: skip
 
         for colour in (0, 1):
             self._over_rows(partial(work, colour, np.uint64(_mix(self.key, 2 * number + colour))))
 
-    def _best(self) -> int:
-        return min(self.best_views, len(self.sources.A))
+    def _scratch(self) -> Patch:
+        return scratch(len(self.sources.A), min(self.best_views, len(self.sources.A)))
 
     def _over_rows(self, work: Callable[[int, int], Any]) -> None:
         h = self.grey.shape[0]

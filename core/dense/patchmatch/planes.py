@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from core.dense.patchmatch.jit import kernel
+from core.dense.patchmatch.jit import inlined
 
 F32 = NDArray[np.float32]
 
 
-@kernel
+@inlined
 def uniform(key, counter):  # type: ignore[no-untyped-def]
     """Random float32 in [0, 1): splitmix64 of (key, counter); no state, so no order of evaluation."""
     z = np.uint64(key) + np.uint64(counter) * np.uint64(0x9E3779B97F4A7C15)
@@ -26,7 +26,7 @@ def uniform(key, counter):  # type: ignore[no-untyped-def]
     return np.float32(np.uint32(z >> np.uint64(40))) * np.float32(1.0 / 16777216.0)
 
 
-@kernel
+@inlined
 def slant_ok(w, gu, gv, u, v, K, min_cosine):  # type: ignore[no-untyped-def]
     """Whether the plane is seen steeply enough: cosine of viewing ray and normal at least `min_cosine`.
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.dense.patchmatch.jit import kernel
+from core.dense.patchmatch.jit import inlined, kernel
 from core.dense.patchmatch.kernels import (
     RADIUS,
     REGION_START,
     REGION_X,
     REGION_Y,
-    TAPS,
-    Patch,
     plane_cost,
     reference_patch,
 )
@@ -31,22 +29,10 @@ EARLY_MARGIN = f32(0.02)
 
 
 @kernel
-def _scratch(n_sources, best):  # type: ignore[no-untyped-def]
-    return Patch(
-        np.empty(TAPS, np.float32),
-        np.empty(TAPS, np.float32),
-        np.empty((n_sources, 3), np.float32),
-        np.empty(best, np.float32),
-        np.empty(best, np.int32),
-    )
-
-
-@kernel
-def score_rows(planes, pairs, grey, mask, sources, best, colour_weight, y0, y1):  # type: ignore[no-untyped-def]
+def score_rows(planes, pairs, grey, mask, sources, patch, colour_weight, y0, y1):  # type: ignore[no-untyped-def]
     """Cost of every present plane of rows [y0, y1) into channel 3, its two best sources into `pairs`."""
     H, W = grey.shape
     S = sources.A.shape[0]
-    patch = _scratch(S, best)
     for v in range(max(y0, RADIUS), min(y1, H - RADIUS)):
         for u in range(RADIUS, W - RADIUS):
             if not mask[v, u] or planes[v, u, 0] <= f32(0):
@@ -59,7 +45,7 @@ def score_rows(planes, pairs, grey, mask, sources, best, colour_weight, y0, y1):
             pairs[v, u, 0], pairs[v, u, 1] = _best_two(patch, S)
 
 
-@kernel
+@inlined
 def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
     """The two best sources of the plane scored last; two different ones wherever there are two."""
     first = patch.order[0]
@@ -68,22 +54,21 @@ def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sweep_rows(planes, pairs, grey, mask, sources, best, colour_weight, K, limits, colour, key, step, draws, y0, y1):  # type: ignore[no-untyped-def]
+def sweep_rows(planes, pairs, grey, mask, sources, patch, colour_weight, K, limits, colour, key, step, draws, y0, y1):  # type: ignore[no-untyped-def]
     """Update the pixels of one colour in rows [y0, y1), reading only the other colour beside itself.
 
     Args:
         planes: (h, w, 4) float32: w, gu, gv, cost; updated in place.
         pairs: (h, w, 2) uint8: the two sources that match best; updated in place.
         grey: (h, w) uint8 reference; mask: (h, w) bool, where a patch lies inside the image.
-        sources: `kernels.Sources`; best: over how many of them the cost is a mean.
+        sources: `kernels.Sources`; patch: `kernels.Patch`, whose `costs` says over how many sources the cost is a mean.
         K: (3,) float32 f, cx, cy with whole-number pixel centres; limits: (2,) smallest and largest inverse depth.
         colour: 0 or 1; key: random key of this view, scale and sweep.
         step: size of refinement, 1 = the whole range; draws: refinements tried per pixel.
     """
     H, W = grey.shape
     S = sources.A.shape[0]
-    patch = _scratch(S, best)
-    trial = np.empty(3, np.float32)
+    trial = patch.trial
     for v in range(max(y0, RADIUS), min(y1, H - RADIUS)):
         start = RADIUS + ((RADIUS + v + colour) & 1)
         for u in range(start, W - RADIUS, 2):
@@ -115,7 +100,7 @@ def sweep_rows(planes, pairs, grey, mask, sources, best, colour_weight, K, limit
             pairs[v, u, 0], pairs[v, u, 1] = first, second
 
 
-@kernel
+@inlined
 def _neighbour(planes, u, v, region, trial):  # type: ignore[no-untyped-def]
     """The best plane of a region, continued to (u, v), into `trial`; False when the region is outside."""
     H, W = planes.shape[:2]
@@ -131,7 +116,7 @@ def _neighbour(planes, u, v, region, trial):  # type: ignore[no-untyped-def]
     return True
 
 
-@kernel
+@inlined
 def _perturbed(w0, gu0, gv0, f, limits, key, counter, k, step, trial):  # type: ignore[no-untyped-def]
     """The plane with a random change of depth, of slant, or of both in turn; small changes as often as large ones."""
     at = counter + np.uint64(4 * k)

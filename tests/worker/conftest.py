@@ -1,0 +1,66 @@
+"""A workplace for runs of the fake stages."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.settings import make_settings
+from tests.worker.fake_stages import GRAPH, SMALL, journal
+from worker.outcome import Event, Outcome
+from worker.results import ResultFolders
+from worker.run import run_inspection
+
+
+@dataclass
+class Workplace:
+    """A video, an output folder, and what the stages shall do."""
+
+    root: Path
+    events: list[Event] = field(default_factory=list)
+
+    @property
+    def video(self) -> Path:
+        return self.root / "input" / "video.mp4"
+
+    @property
+    def out(self) -> Path:
+        return self.root / "out"
+
+    def control(self, **wishes: dict[str, Any]) -> None:
+        """Keys use ``__`` for the slash."""
+        named = {key.replace("__", "/"): wish for key, wish in wishes.items()}
+        (self.video.parent / "control.json").write_text(json.dumps(named))
+
+    def run(self, options: dict[str, Any] | None = None, annotations: Path | None = None, **more: Any) -> Outcome:
+        settings = make_settings(options={**SMALL, **(options or {})})
+        more = {"workers": 2, "graph": GRAPH, "on_event": self.events.append, **more}
+        return run_inspection(self.video, annotations, self.out, settings, **more)
+
+    def started(self) -> list[str]:
+        """Keys of the tasks that began since the last call."""
+        lines = journal(self.video)
+        (self.video.parent / "journal.txt").unlink(missing_ok=True)
+        return sorted(line.removeprefix("start ") for line in lines if line.startswith("start "))
+
+    def digests(self) -> dict[str, str]:
+        """Digest of every result by the task that made it."""
+        found = ResultFolders(self.out / ".bladeatlas" / "results").all()
+        return {manifest.key: manifest.digest for manifest in found}
+
+    def temporary(self) -> list[Path]:
+        """What attempts left behind."""
+        hidden = self.out / ".bladeatlas"
+        return [*hidden.glob("results/*/.tmp-*"), *hidden.glob("tables-*"), *self.out.rglob(".part-*")]
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Workplace:
+    made = Workplace(tmp_path)
+    made.video.parent.mkdir()
+    made.video.write_bytes(b"a video" * 100)
+    return made

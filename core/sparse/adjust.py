@@ -152,13 +152,14 @@ def _refine(
     adjustment = adjustment_options(principal_point, threads)
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(model)
+    # A point at infinity stalls the solver, and its error means nothing: filter before and after.
+    mapper.filter_points(mapping)
     rounds, stable = 0, False
     while rounds < MAX_ROUNDS and not stable and model.num_points3D():
         progress(rounds / MAX_ROUNDS)
         changed = mapper.complete_and_merge_tracks(triangulation)
         changed += mapper.retriangulate(triangulation)
         mapper.adjust_global_bundle(mapping, adjustment)
-        # A point at infinity has no error that means anything: it goes here, before errors are averaged.
         changed += mapper.filter_points(mapping)
         stable = changed < STABLE_CHANGE * max(1, model.compute_num_observations())
         rounds += 1

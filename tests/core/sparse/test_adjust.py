@@ -1,0 +1,98 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pycolmap
+import pytest
+
+from core.settings.groups import MapperSettings
+from core.sparse.adjust import MIN_IMAGES, adjust, free_principal_point
+from core.sparse.cases import Case, run_case
+from core.sparse.mapper import mapper_options, model_stats, open_cache
+from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
+
+SETTINGS = MapperSettings(search_tracks=150)
+OPTIONS = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return make_scene(18)
+
+
+@pytest.fixture(scope="module")
+def graph(scene, tmp_path_factory) -> Path:
+    return write_graph(tmp_path_factory.mktemp("adjust") / "graph", scene, view_graph(scene))
+
+
+@pytest.fixture(scope="module")
+def model(graph):
+    return run_case(Case(graph, 0, 18, SETTINGS, 0)).model
+
+
+@pytest.fixture(scope="module")
+def cache(graph):
+    return open_cache(graph / "database.db")
+
+
+def disturbed(model, *, shift_px=(0.0, 0.0), points_su=0.0):
+    """A copy with another principal point and moved points."""
+    other = pycolmap.Reconstruction(model)
+    camera = other.camera(1)
+    params = np.array(camera.params)
+    params[2:4] += shift_px
+    camera.params = params
+    rng = np.random.default_rng(0)
+    for point in other.points3D.values():
+        point.xyz = point.xyz + points_su * rng.standard_normal(3)
+    return other
+
+
+def test_a_disturbed_model_comes_back_and_the_input_stays(model, cache, scene):
+    start = disturbed(model, points_su=0.03)
+    before = model_stats(start).mean_reprojection_error_px
+    result = adjust(start, cache, OPTIONS, refine_principal_point=False)
+    assert result.error_before_px == pytest.approx(before)
+    assert result.error_after_px < 0.5 * before
+    assert result.stable
+    assert center_errors(result.model, scene).max() < 0.01
+    assert model_stats(start).mean_reprojection_error_px == pytest.approx(before)
+    assert (result.principal_point.refined, result.principal_point.reason) == (False, "off")
+    assert np.array(result.model.camera(1).params)[2:4].tolist() == [WIDTH / 2, HEIGHT / 2]
+
+
+def test_a_repeated_adjustment_gives_the_same_model(model, cache, tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        adjust(model, cache, OPTIONS, refine_principal_point=True).model.write_binary(tmp_path / name)
+    for file in ("images.bin", "points3D.bin", "cameras.bin"):
+        assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
+
+
+def test_a_point_at_infinity_is_removed_before_errors_are_averaged(model, cache):
+    start = pycolmap.Reconstruction(model)
+    lost = min(start.point3D_ids())
+    start.point3D(lost).xyz = np.array([1e150, 1e150, 1e150])
+    assert adjust(start, cache, OPTIONS, refine_principal_point=False).error_after_px < 1.0
+
+
+def test_a_wrong_principal_point_is_found_again(model, cache, scene):
+    start = adjust(disturbed(model, shift_px=(14.0, -9.0)), cache, OPTIONS, refine_principal_point=False).model
+    result = adjust(start, cache, OPTIONS, refine_principal_point=True)
+    assert (result.principal_point.refined, result.principal_point.reason) == (True, "kept")
+    found = np.array(result.model.camera(1).params)[2:4]
+    assert found == pytest.approx([WIDTH / 2, HEIGHT / 2], abs=3.0)
+    assert max(result.principal_point.sigma_px) < 3.0
+    assert result.error_after_px <= result.error_before_px
+
+
+def test_a_right_principal_point_stays_exactly(model, cache):
+    result = adjust(model, cache, OPTIONS, refine_principal_point=True)
+    assert result.principal_point.reason == "insignificant"
+    assert np.array(result.model.camera(1).params)[2:4].tolist() == [WIDTH / 2, HEIGHT / 2]
+
+
+def test_few_images_do_not_determine_a_principal_point(graph):
+    few = run_case(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0)).model
+    assert free_principal_point(few).reason == "few_images"

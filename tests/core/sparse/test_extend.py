@@ -1,0 +1,111 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pycolmap
+import pytest
+
+from core.settings import make_settings
+from core.settings.groups import MapperSettings
+from core.sparse.cases import Case, run_case
+from core.sparse.confirm import choose, confirmed_or_searched
+from core.sparse.extend import register_rest
+from core.sparse.mapper import ModelStats, model_stats
+from core.stage import StageTask
+from core.stages import confirm as confirm_stage
+from core.stages import extend as extend_stage
+from tests.core.sparse.scene import center_errors, make_scene, view_graph, write_graph
+
+SETTINGS = MapperSettings(search_tracks=150)
+N_FRAMES = 20
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return make_scene(N_FRAMES)
+
+
+@pytest.fixture(scope="module")
+def graph(scene, tmp_path_factory) -> Path:
+    return write_graph(tmp_path_factory.mktemp("extend") / "graph", scene, view_graph(scene))
+
+
+@pytest.fixture(scope="module")
+def winner(graph):
+    return run_case(Case(graph, 4, 14, SETTINGS, 0)).model
+
+
+def stats(images, points):
+    return ModelStats(images, points, 1.0, 1.0, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("confirmed", "kept"),
+    [
+        (stats(220, 65000), "confirmed"),
+        (stats(220, 64000), "confirmed"),
+        (stats(219, 70000), "confirmed"),
+        (stats(220, 60000), "searched"),
+        (stats(180, 90000), "searched"),
+        (None, "searched"),
+    ],
+)
+def test_the_confirmed_model_is_kept_unless_clearly_weaker(confirmed, kept):
+    assert choose(stats(220, 65087), confirmed) == kept
+
+
+def test_a_model_that_is_too_good_for_its_window_is_not_replaced(graph):
+    whole = run_case(Case(graph, 0, N_FRAMES, SETTINGS, 0)).model
+    model, kept = confirmed_or_searched(Case(graph, 4, 14, SETTINGS, 0), whole)
+    assert kept == "searched"
+    assert model is whole
+
+
+def test_the_rest_of_the_frames_is_registered_on_both_sides(graph, winner, scene):
+    model = register_rest(graph, winner, N_FRAMES, SETTINGS, seed=0)
+    assert sorted(model.reg_image_ids()) == list(range(1, N_FRAMES + 1))
+    assert center_errors(model, scene).max() < 0.03
+    assert winner.num_reg_images() == 10
+
+
+def run_stages(graph, winner, out, **options):
+    settings = make_settings("default", {"mapper.search_tracks": 150, **options})
+    for name in ("reduce_refine/model", "confirm", "extend"):
+        (out / name).mkdir(parents=True)
+    winner.write_binary(out / "reduce_refine/model")
+    reduced = {"best": "seg_000_0004_0014", "start": 4, "end": 14, "kind": "coarse"}
+
+    def task(key, inputs, facts):
+        return StageTask(key, {}, settings, inputs, facts, Path("video"), None, out / key)
+
+    confirmed = confirm_stage.run(
+        task("confirm", {"graph": graph, "reduce_refine": out / "reduce_refine"}, {"reduce_refine": reduced})
+    ).facts
+    facts = {"frames": {"n_frames": N_FRAMES}, "confirm": confirmed}
+    return confirmed, extend_stage.run(task("extend", {"graph": graph, "confirm": out / "confirm"}, facts)).facts
+
+
+def test_the_stages_write_what_they_promise(graph, winner, tmp_path, scene):
+    confirmed, extended = run_stages(graph, winner, tmp_path)
+    assert (confirmed["kept"], confirmed["start_mode"], confirmed["registered_images"]) == ("confirmed", "scratch", 10)
+    assert extended["registered_images"] == N_FRAMES
+    assert extended["checks"] == []
+    assert extended["adjustment"]["error_after_px"] <= extended["adjustment"]["error_before_px"]
+    assert json.loads((tmp_path / "extend/registered.json").read_text()) == list(range(N_FRAMES))
+    model = pycolmap.Reconstruction(tmp_path / "extend/model")
+    assert [model.image(i + 1).name for i in range(N_FRAMES)] == [f"{i:04d}.jpg" for i in range(N_FRAMES)]
+    assert model_stats(model).points3D == extended["points3D"]
+    assert center_errors(model, scene).max() < 0.02
+
+
+def test_what_is_switched_off_is_not_done(graph, winner, tmp_path):
+    off = {"model.confirm": False, "model.register_rest": False, "model.final_adjustment": False}
+    confirmed, extended = run_stages(graph, winner, tmp_path, **off)
+    assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "searched")
+    assert extended["registered_images"] == 10
+    assert extended["adjustment"] is None
+    assert extended["principal_point_refined"] is False
+    assert {flag["code"] for flag in extended["checks"]} <= {"coverage_low"}
+    same = [pycolmap.Reconstruction(tmp_path / name / "model") for name in ("reduce_refine", "extend")]
+    assert model_stats(same[0]) == model_stats(same[1])

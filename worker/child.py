@@ -9,7 +9,6 @@ progress and the outcome leave as JSON lines on a pipe.
 from __future__ import annotations
 
 import ctypes
-import errno
 import importlib
 import json
 import os
@@ -26,11 +25,10 @@ from typing import Any, NoReturn
 from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
 from core.stage import StageResult, StageTask
-from store.disk import disk_is_full
+from store.disk import NO_SPACE, disk_is_full
 from worker.results import seal
 
 _PR_SET_PDEATHSIG = 1
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 _PROGRESS_EVERY_S = 0.1
 
 
@@ -149,8 +147,8 @@ def describe(error: BaseException, key: str, out: Path) -> dict[str, Any]:
         return ResourceError("not enough memory for this task", code="oom", where=key).to_dict()
     cause: BaseException | None = error
     while cause is not None:
-        if isinstance(cause, OSError) and cause.errno in _FULL:
-            reason = os.strerror(cause.errno).lower()
+        if isinstance(cause, OSError) and cause.errno in NO_SPACE:
+            reason = os.strerror(cause.errno or 0).lower()
             return DiskFull(f"the output folder cannot be written: {reason}", where=key).to_dict()
         cause = cause.__cause__ or cause.__context__
     name = type(error).__name__

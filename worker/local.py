@@ -7,9 +7,13 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TypeVar
 
 from core.errors import BladeAtlasError
+from worker.patience import patiently
 from worker.runner import Held, TaskRunner
+
+T = TypeVar("T")
 
 _TICK_S = 0.5
 """How soon a cancellation, the end of the plan or work of others is noticed."""
@@ -44,7 +48,7 @@ class LocalRunners:
 
     def join(self, is_over: Callable[[], bool]) -> None:
         """Wait until `is_over` or until a thread failed; then all threads have ended."""
-        while not self._stop.is_set() and not is_over():
+        while not self._stop.is_set() and not self._patiently(is_over):
             with self._woken:
                 self._woken.wait(_TICK_S)
         self.stop()
@@ -71,10 +75,15 @@ class LocalRunners:
             self.runner.interrupted.set()
             self.wake()
 
+    def _patiently(self, call: Callable[[], T]) -> T:
+        return patiently(self.runner.plan.db, call, self._stop)
+
     def _work(self, number: int) -> None:
         plan = self.runner.plan
         while not self._stop.is_set():
-            lease = plan.lease(f"{self.owner}/{number}", inspection_id=self.inspection_id, queues=self.queues)
+            lease = self._patiently(
+                lambda: plan.lease(f"{self.owner}/{number}", inspection_id=self.inspection_id, queues=self.queues)
+            )
             if lease is not None:
                 self.runner.run(lease)
                 self.wake()
@@ -87,14 +96,18 @@ class LocalRunners:
         plan, next_beat = self.runner.plan, 0.0
         while not self._stop.wait(_TICK_S):
             held = list(self.runner.held.values())
-            stopping = plan.cancelling({one.lease.inspection_id for one in held}) if held else set()
+            self._patiently(partial(self._pass_on_cancellations, held))
+            if time.monotonic() >= next_beat:
+                next_beat = time.monotonic() + self.heartbeat_s
+                self._patiently(partial(self._beat, held))
+                self._patiently(plan.expire)
+
+    def _pass_on_cancellations(self, held: Sequence[Held]) -> None:
+        if held:
+            stopping = self.runner.plan.cancelling({one.lease.inspection_id for one in held})
             for one in held:
                 if one.lease.inspection_id in stopping:
                     one.stop = "cancelled"
-            if time.monotonic() >= next_beat:
-                next_beat = time.monotonic() + self.heartbeat_s
-                self._beat(held)
-                plan.expire()
 
     def _beat(self, held: Sequence[Held]) -> None:
         lost = self.runner.plan.heartbeat((one.lease, one.progress, one.message) for one in held)

@@ -51,7 +51,6 @@ class TaskProcess:
         self._peak = 0
         self._started = time.monotonic()
         self._read, write = os.pipe()
-        log.parent.mkdir(parents=True, exist_ok=True)
         try:
             with log.open("ab") as log_stream:
                 self._process = subprocess.Popen(

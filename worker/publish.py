@@ -90,6 +90,8 @@ def publish(record: RunRecord, folders: Mapping[str, Path], out: Path, hidden: P
     known = _load(hidden / _LIST)
     facts = {task.key: task.facts for task in record.tasks if task.state == "succeeded"}
     wanted = dict(_files(folders, facts, trusted=report.verdict != "refused"))
+    # Its presence says that everything else is of one run, so it goes first and comes last.
+    store.remove("summary.json")
     published = {path: _put(store, out, path, source, known.get(path)) for path, source in wanted.items()}
     # Listed before anything is removed or the tables are written: a crash in between forgets no file.
     _save(hidden / _LIST, {**known, **published})

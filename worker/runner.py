@@ -5,26 +5,26 @@ Local runs and embedded servers use these threads; a queue's task calls `TaskRun
 
 from __future__ import annotations
 
+import json
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from sqlalchemy.exc import InterfaceError, OperationalError
-
-from core.errors import BladeAtlasError, DiskFull, StageFailed
+from core.errors import BladeAtlasError, DiskFull, ResourceError, StageFailed
 from core.settings import Settings
+from store.disk import NO_SPACE
 from store.plan import Plan
 from store.records import Lease, Result
 from store.settings import available_cores
+from worker.patience import patiently
 from worker.process import Ended, StopReason, TaskProcess
 from worker.results import Manifest, ResultFolders
 from worker.rows import rows_of
 
 T = TypeVar("T")
-_RECONNECT_S = 0.5
 
 
 class Observer(Protocol):
@@ -71,7 +71,7 @@ class TaskRunner:
         try:
             outcome, error = self._execute(held)
         except OSError as failure:
-            error = DiskFull(f"the results folder cannot be written: {failure.strerror}", where=lease.key)
+            error = _as_expected(failure, lease.key)
             outcome = self._fail(lease, error, 0.0, 0)
         finally:
             self.held.pop(lease.task_id, None)
@@ -104,14 +104,23 @@ class TaskRunner:
         if missing:
             error = StageFailed(f"the result of {missing[0]} has vanished; run again to make it anew", where=lease.key)
             return Ended(error, "", 0.0, 0)
-        log = self.logs / f"{lease.key.replace('/', '__')}.log"
-        process = TaskProcess(self._spec(lease, temporary), log, self.memory_limit_bytes)
+        process = TaskProcess(self._spec(lease, temporary), self._log(lease), self.memory_limit_bytes)
 
         def progress(fraction: float, message: str) -> None:
             held.progress, held.message = fraction, message
             self.observer.progressed(lease, fraction, message)
 
         return process.wait(progress, lambda: "interrupted" if self.interrupted.is_set() else held.stop)
+
+    def _log(self, lease: Lease) -> Path:
+        """The task's log; a first attempt begins it anew. Who writes to it is said in its own lines."""
+        self.logs.mkdir(parents=True, exist_ok=True)
+        path = self.logs / f"{lease.key.replace('/', '__')}.log"
+        names = ("inspection_id", "key", "attempt", "fence", "fingerprint", "owner")
+        line = {"event": "attempt_started", **{name: getattr(lease, name) for name in names}}
+        with path.open("w" if lease.attempt == 1 else "a", encoding="utf-8") as stream:
+            stream.write(json.dumps({"time": datetime.now(UTC).isoformat(timespec="milliseconds"), **line}) + "\n")
+        return path
 
     def _spec(self, lease: Lease, temporary: Path) -> dict[str, Any]:
         stage = self.plan.graph.stages[lease.stage]
@@ -148,17 +157,14 @@ class TaskRunner:
         return "released" if self._patiently(lambda: self.plan.release(held.lease)) else "refused"
 
     def _patiently(self, call: Callable[[], T]) -> T:
-        """Wait for a database that went away: the work is done, only its commit is missing.
+        return patiently(self.plan.db, call, self.interrupted)
 
-        A commit whose answer was lost is repeated and then refused by its fence: it counts once.
-        """
-        while True:
-            try:
-                return call()
-            except (OperationalError, InterfaceError):
-                if self.interrupted.is_set():
-                    raise
-                time.sleep(_RECONNECT_S)
+
+def _as_expected(failure: OSError, key: str) -> BladeAtlasError:
+    """What a failure of the runner's own work on files and processes means."""
+    if failure.errno in NO_SPACE:
+        return DiskFull(f"the results folder cannot be written: {failure.strerror}", where=key)
+    return ResourceError(f"the task could not be started or kept: {failure}", where=key)
 
 
 def result_of(manifest: Manifest, results: ResultFolders, *, peak_rss_bytes: int) -> Result:

@@ -29,7 +29,7 @@ from store.disk import NO_SPACE, disk_is_full
 from worker.results import seal
 
 _PR_SET_PDEATHSIG = 1
-_PROGRESS_EVERY_S = 0.1
+_PROGRESS_EVERY_S = 0.5
 
 
 def die_with(parent: int, with_signal: signal.Signals) -> None:

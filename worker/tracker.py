@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from store.graph import Graph
@@ -15,24 +14,23 @@ from worker.outcome import Event, EventKind
 class Tracker:
     """Turns changes of the plan into events; calls come one at a time."""
 
-    def __init__(self, graph: Graph, workers: int, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, graph: Graph, workers: int) -> None:
         self._graph = graph
         self._workers = workers
-        self._clock = clock
-        self._started = clock()
         self._tasks: dict[str, TaskView] = {}
+        self._stages: dict[str, list[TaskView]] = {}
         self._running: dict[str, float] = {}
         self._fraction = 0.0
-        self._at_start: float | None = None
 
     def refresh(self, tasks: Sequence[TaskView]) -> list[Event]:
         """Take in the plan as it stands; events of the tasks that ended since the last time."""
         before, self._tasks = self._tasks, {task.key: task for task in tasks}
+        self._stages = {}
+        for task in tasks:
+            self._stages.setdefault(task.stage, []).append(task)
         ended = [t for t in tasks if t.state in OVER_TASK and (t.key not in before or before[t.key].state != t.state)]
         for task in ended:
             self._running.pop(task.key, None)
-        if self._at_start is None:
-            self._at_start = self._share()
         return [self._ended(task) for task in ended]
 
     def _ended(self, task: TaskView) -> Event:
@@ -51,7 +49,7 @@ class Tracker:
     def event(self, kind: EventKind, key: str = "", message: str = "", state: str = "") -> Event:
         """An event of this moment; its fraction never falls."""
         stage = key.split("/", 1)[0]
-        own = [task for task in self._tasks.values() if task.stage == stage]
+        own = self._stages.get(stage, [])
         done = sum(task.state in OVER_TASK for task in own)
         self._fraction = max(self._fraction, min(1.0, self._share()))
         return Event(
@@ -68,13 +66,13 @@ class Tracker:
         )
 
     def _stage_share(self, stage: str) -> float:
-        own = [task for task in self._tasks.values() if task.stage == stage]
+        own = self._stages.get(stage, [])
         done = sum(1.0 if task.state in OVER_TASK else self._running.get(task.key, 0.0) for task in own)
         return done / len(own) if own else 0.0
 
     def _weights(self) -> dict[str, float]:
         """Weight of every stage that this run has; one that was passed by without tasks has none."""
-        present = {task.stage for task in self._tasks.values()}
+        present = self._stages
         names = list(self._graph.stages)
         reached = max((names.index(stage) for stage in present), default=-1)
         return {
@@ -101,7 +99,7 @@ class Tracker:
         second_per_weight = sum(sum(seconds) for seconds in took.values()) / done_weight
         left = 0.0
         for stage, weight in weights.items():
-            own = [task for task in self._tasks.values() if task.stage == stage]
+            own = self._stages.get(stage, [])
             rest = len(own) * (1 - self._stage_share(stage))
             side_by_side = self._workers if self._graph.stages[stage].fan_out else 1
             mean = sum(took[stage]) / len(took[stage]) if stage in took else None

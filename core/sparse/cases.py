@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, transfer_poses, triangulate
-from core.sparse.initial_pair import MIN_ANGLE_DEG, rank_initial_pairs
+from core.sparse.initial_pair import rank_initial_pairs
 from core.sparse.mapper import (
     ModelStats,
     Progress,
@@ -20,7 +18,8 @@ from core.sparse.mapper import (
     model_stats,
     open_cache,
 )
-from core.sparse.tracks import build_tracks, choose_keypoints, thin_cache
+from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
+from core.sparse.tracks import Tracks, build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import Frames, read_frames, within
 from core.viewgraph import PairTable, read_table
 
@@ -31,7 +30,10 @@ SHARE_DROP = 0.1
 """A warm case that registers a share of its frames lower by more than this is mapped again from scratch."""
 
 FOCAL_JUMP = 0.03
-"""So is one whose focal length moved by a larger share than this."""
+"""So is one whose focal length moved by a larger share than this,"""
+
+ERROR_RISE = 1.5
+"""or whose median reprojection error grew by more than this factor."""
 
 
 @dataclass(frozen=True)
@@ -72,30 +74,34 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
     graph = within(read_table(case.graph / "graph.npz"), case.start, case.end)
     models: list[Any] = []
     mode = "scratch"
-    if _usable(graph, frames, case.settings):
+    tracks = build_tracks(graph)
+    reason = _why_not(graph, frames, tracks, case.settings)
+    if not reason:
         full = open_cache(case.graph / "database.db", frames.names, MIN_MATCHES)
-        search = _search_cache(case, graph, frames, full)
-        if start_model is not None:
-            mode = "warm"
-            models = _map_warm(case, search, full, start_model, progress)
-            if not models or _is_worse(models[0], start_model, len(frames.names)):
-                mode = "warm_then_scratch"
-        if mode != "warm":
-            models += _map_scratch(case, search, full, graph, progress)
+        search = _search_cache(case, graph, frames, tracks, full)
+        warm = None if start_model is None else _map_warm(case, search, full, start_model, progress)
+        if warm is not None and not _is_worse(warm, start_model, len(frames.names)):
+            mode, models = "warm", [warm]
+        else:
+            mode = "scratch" if start_model is None else "warm_then_scratch"
+            models = _map_scratch(case, search, full, graph, progress)
+            # A wrong model can have more points than a right one, its tracks being broken: only images count here.
+            if warm is not None and warm.num_reg_images() > max([m.num_reg_images() for m in models], default=0):
+                models = [warm]
     best = best_model(models)
     if best is None:
-        return CaseResult(len(frames.names), 0, mode, None, NO_MODEL, _reason(graph, frames, case.settings))
+        return CaseResult(len(frames.names), 0, mode, None, NO_MODEL, reason or "no_initial_pair")
     return CaseResult(len(frames.names), len(models), mode, best, model_stats(best))
 
 
 NO_MODEL = ModelStats(0, 0, 0.0, 0.0, 0.0)
 
 
-def _search_cache(case: Case, graph: PairTable, frames: Frames, full: Any) -> Any:
+def _search_cache(case: Case, graph: PairTable, frames: Frames, tracks: Tracks, full: Any) -> Any:
     """The cache that poses are searched on: `full` itself, or one with few keypoints per frame."""
     if case.settings.search_tracks == 0:
         return full
-    chosen = choose_keypoints(build_tracks(graph), frames, case.settings.search_tracks)
+    chosen = choose_keypoints(tracks, frames, case.settings.search_tracks)
     return thin_cache(graph, frames, chosen, MIN_MATCHES)
 
 
@@ -117,35 +123,33 @@ def _map_scratch(case: Case, search: Any, full: Any, graph: PairTable, progress:
     return [] if best is None else [densify(full, best, _options(case))]
 
 
-def _map_warm(case: Case, search: Any, full: Any, start_model: Any, progress: Progress | None) -> list[Any]:
-    """Go on from the poses of `start_model` that fall into the window."""
+def _map_warm(case: Case, search: Any, full: Any, start_model: Any, progress: Progress | None) -> Any | None:
+    """Go on from the poses of `start_model` that fall into the window; None when that leads nowhere."""
     model = transfer_poses(search, start_model)
     if model.num_reg_images() < case.settings.min_model_size:
-        return []
+        return None
     if model.num_reg_images() < search.num_images():
         triangulate(search, model, _options(case), adjust=False)
         model = best_model(map_images(search, _options(case), start_model=model, progress=progress))
-    return [] if model is None else [densify(full, model, _options(case))]
+    return None if model is None else densify(full, model, _options(case))
 
 
 def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:
     """Whether a warm model fell clearly behind the one it started from."""
-    drop = 1.0 - model.num_reg_images() / n_frames > SHARE_DROP
+    if 1.0 - model.num_reg_images() / n_frames > SHARE_DROP:
+        return True
     focal, before = (next(iter(m.cameras.values())).mean_focal_length() for m in (model, start_model))
-    return bool(drop or abs(focal / before - 1.0) > FOCAL_JUMP)
+    if abs(focal / before - 1.0) > FOCAL_JUMP:
+        return True
+    errors = [model_stats(m).median_reprojection_error_px for m in (model, start_model)]
+    return errors[0] > ERROR_RISE * errors[1]
 
 
-def _usable(graph: PairTable, frames: Frames, settings: MapperSettings) -> bool:
-    return len(frames.names) >= settings.min_model_size and bool((graph.n_inliers >= MIN_MATCHES).any())
-
-
-def _reason(graph: PairTable, frames: Frames, settings: MapperSettings) -> str:
-    """Why there is no model, as a code."""
+def _why_not(graph: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> str:
+    """Code of what makes mapping pointless; empty when nothing does."""
     if len(frames.names) < settings.min_model_size:
         return "too_few_frames"
-    strong = graph.n_inliers >= settings.init_min_num_inliers
-    if not strong.any():
+    if not (graph.n_inliers >= settings.init_min_num_inliers).any():
         return "too_few_matches"
-    if np.percentile(graph.triangulation_angle_deg[strong], 90) < MIN_ANGLE_DEG:
-        return "no_parallax"
-    return "no_initial_pair"
+    residual = rotation_residual_px(tracks, frames)
+    return "no_parallax" if residual is not None and residual < MIN_RESIDUAL_PX else ""

@@ -19,7 +19,8 @@ from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
 from core.settings import Settings
 from core.sparse.initial_pair import rank_initial_pairs
 from core.sparse.mapper import best_model, map_images, mapper_options, model_stats
-from core.sparse.tracks import thin_cache
+from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
+from core.sparse.tracks import build_tracks, thin_cache
 from core.sparse.view_graph import Frames, within
 from core.verification import Verifier
 from core.viewgraph import make_table
@@ -82,7 +83,11 @@ def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Loa
         load: features of a frame.
         report: progress in [0, 1].
     """
+    nothing = SpanFocal(*span, camera.mean_focal_length(), 0.0, 0, 0, 0.0)
     frames, table = _match(span, camera, settings, load, report)
+    residual = rotation_residual_px(build_tracks(table), frames)
+    if residual is None or residual < MIN_RESIDUAL_PX:
+        return nothing
     everything = {frame: np.arange(len(xy)) for frame, xy in zip(frames.indices, frames.keypoints, strict=True)}
     cache = thin_cache(table, frames, everything, settings.verification.min_inliers)
     ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
@@ -91,7 +96,7 @@ def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Loa
     models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
     model = best_model(models)
     if model is None:
-        return SpanFocal(*span, camera.mean_focal_length(), 0.0, 0, 0, 0.0)
+        return nothing
     adjustment = pycolmap.BundleAdjustmentOptions()
     adjustment.print_summary = False
     pycolmap.bundle_adjustment(model, adjustment)

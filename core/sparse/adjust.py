@@ -27,6 +27,9 @@ STABLE_CHANGE = 0.0005
 FUNCTION_TOLERANCE = 1e-7
 MAX_ITERATIONS = 100
 
+HOPELESS_PX = 50.0
+"""Observations farther off than this are dropped before the first adjustment."""
+
 MAX_SIGMA_PX = 3.0
 """The principal point is well determined when both its posterior sigmas are below this."""
 MIN_SHIFT_SIGMAS = 3.0
@@ -152,8 +155,10 @@ def _refine(
     adjustment = adjustment_options(principal_point, threads)
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(model)
-    # A point at infinity stalls the solver, and its error means nothing: filter before and after.
-    mapper.filter_points(mapping)
+    # A point at infinity stalls the solver; others may be off now because their camera is.
+    hopeless = options.get_mapper()
+    hopeless.filter_max_reproj_error = HOPELESS_PX
+    mapper.filter_points(hopeless)
     rounds, stable = 0, False
     while rounds < MAX_ROUNDS and not stable and model.num_points3D():
         progress(rounds / MAX_ROUNDS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from alembic import context
-from sqlalchemy import Connection, text
+from sqlalchemy import URL, Connection, make_url, text
 
 from store.db import make_engine
 from store.models import Base
@@ -12,11 +12,11 @@ _LOCK = 0x0B1ADE
 """PostgreSQL advisory lock: two servers that start together migrate one after the other."""
 
 
-def _url() -> str:
+def _url() -> str | URL:
     given = context.config.attributes.get("url") or context.get_x_argument(as_dictionary=True).get("url")
     if not given:
         raise SystemExit("give the database with: alembic -x url=... <command>")
-    return str(given)
+    return make_url(given)
 
 
 def _migrate(connection: Connection) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Any
 
 import fsspec
+from fsspec.implementations.local import LocalFileSystem
 
 from core.errors import BadInput
 from store.disk import sync_path
@@ -33,11 +34,14 @@ class Stored:
 
 
 class ArtifactStore:
-    """Files below one root, e.g. ``/data/results`` or ``s3://bucket/prefix``."""
+    """Files below one root: a local folder as a `Path`, or a URL, e.g. ``s3://bucket/prefix``."""
 
-    def __init__(self, root: str, **options: Any) -> None:
-        self._fs, self._root = fsspec.core.url_to_fs(root, **options)
-        self._local = isinstance(self._fs, fsspec.implementations.local.LocalFileSystem)
+    def __init__(self, root: Path | str, **options: Any) -> None:
+        if isinstance(root, Path):  # never read as a URL: a folder may have any name
+            self._fs, self._root = LocalFileSystem(), str(root.absolute())
+        else:
+            self._fs, self._root = fsspec.core.url_to_fs(root, **options)
+        self._local = isinstance(self._fs, LocalFileSystem)
 
     def put(self, path: str, source: Path) -> Stored:
         """Store a copy of the file `source` under `path`, replacing what was there in one step."""

@@ -13,8 +13,7 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, Engine, create_engine, event, func, select
-from sqlalchemy.engine import make_url
+from sqlalchemy import URL, Connection, Engine, create_engine, event, func, make_url, select
 from sqlalchemy.exc import DatabaseError, OperationalError
 from sqlalchemy.orm import Session
 
@@ -24,12 +23,12 @@ from core.errors import BadInput, DiskFull
 _BUSY_MS = 30_000
 
 
-def sqlite_url(path: Path) -> str:
-    """URL of a SQLite file."""
-    return f"sqlite+pysqlite:///{path}"
+def sqlite_url(path: Path) -> URL:
+    """URL of a SQLite file; an object, because as text a path with ``?`` would be cut."""
+    return URL.create("sqlite+pysqlite", database=str(path))
 
 
-def make_engine(url: str) -> Engine:
+def make_engine(url: str | URL) -> Engine:
     """Engine for `url`; a plain ``postgresql://`` is taken to psycopg 3."""
     parsed = make_url(url)
     if parsed.drivername in ("postgres", "postgresql"):
@@ -58,8 +57,7 @@ def _begin_sqlite(connection: Connection) -> None:
 class Database:
     """An engine with its two kinds of transaction."""
 
-    def __init__(self, url: str) -> None:
-        self.url = url
+    def __init__(self, url: str | URL) -> None:
         self.engine = make_engine(url)
         self._writer = self.engine.execution_options(bladeatlas_write=True)
         self.is_sqlite = self.engine.dialect.name == "sqlite"
@@ -98,15 +96,16 @@ def _is_full(error: OperationalError) -> bool:
     return any(words in str(error.orig) for words in ("disk is full", "disk I/O error", "readonly database"))
 
 
-def alembic_config(url: str) -> Config:
+def alembic_config(url: str | URL) -> Config:
     """Alembic's configuration, without a file."""
     config = Config()
-    config.set_main_option("script_location", str(Path(migrations.__file__).parent))
+    # Alembic reads options through a parser that takes % for a reference.
+    config.set_main_option("script_location", str(Path(migrations.__file__).parent).replace("%", "%%"))
     config.attributes["url"] = url
     return config
 
 
-def upgrade(url: str) -> None:
+def upgrade(url: str | URL) -> None:
     """Bring the tables to the newest revision; does nothing when they are.
 
     Raises:

@@ -8,8 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from sqlalchemy import create_engine, text
-from sqlalchemy.engine import make_url
+from sqlalchemy import URL, create_engine, make_url, text
 
 from store.db import Database, make_engine, sqlite_url, upgrade
 from tests.conftest import service_url
@@ -19,7 +18,7 @@ BOTH = [pytest.param("sqlite"), pytest.param("postgresql", marks=pytest.mark.ser
 
 
 @contextmanager
-def database_url(kind: str, folder: Path) -> Iterator[str]:
+def database_url(kind: str, folder: Path) -> Iterator[URL]:
     """URL of an empty database."""
     if kind == "sqlite":
         yield sqlite_url(folder / "plan.db")
@@ -30,7 +29,7 @@ def database_url(kind: str, folder: Path) -> Iterator[str]:
     with admin.connect() as connection:
         connection.execute(text(f'CREATE DATABASE "{name}"'))
     try:
-        yield make_url(server).set(database=name).render_as_string(hide_password=False)
+        yield make_url(server).set(database=name)
     finally:
         with admin.connect() as connection:
             connection.execute(text(f'DROP DATABASE "{name}" WITH (FORCE)'))

@@ -86,7 +86,7 @@ def publish(record: RunRecord, folders: Mapping[str, Path], out: Path, hidden: P
         hidden: this program's own folder inside it, on the same disk.
     """
     report = build_report(record)
-    store = ArtifactStore(str(out))
+    store = ArtifactStore(out)
     known = _load(hidden / _LIST)
     facts = {task.key: task.facts for task in record.tasks if task.state == "succeeded"}
     wanted = dict(_files(folders, facts, trusted=report.verdict != "refused"))
@@ -158,5 +158,5 @@ def _load(path: Path) -> dict[str, dict[str, Any]]:
 def _save(path: Path, published: Mapping[str, Mapping[str, Any]]) -> None:
     part = path.with_suffix(".part")
     part.write_text(json.dumps(published, sort_keys=True, indent=1), encoding="utf-8")
-    ArtifactStore(str(path.parent)).put(path.name, part)
+    ArtifactStore(path.parent).put(path.name, part)
     part.unlink()

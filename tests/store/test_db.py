@@ -10,7 +10,7 @@ import pytest
 from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import inspect, text
+from sqlalchemy import URL, inspect, text
 
 from core.errors import BadInput, DiskFull
 from store.db import Database, alembic_config, make_engine, open_sqlite, sqlite_url, upgrade
@@ -19,12 +19,12 @@ from tests.databases import BOTH, database_url
 
 
 @pytest.fixture(params=BOTH)
-def url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+def url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[URL]:
     with database_url(request.param, tmp_path) as made:
         yield made
 
 
-def test_migrations_make_what_the_models_say_up_and_down(url: str) -> None:
+def test_migrations_make_what_the_models_say_up_and_down(url: URL) -> None:
     engine = make_engine(url)
     for _ in range(2):
         upgrade(url)

@@ -19,7 +19,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def test_two_processes_share_a_plan_without_running_anything_twice(db: Database, tmp_path: Path) -> None:
     Inspections(db, GRAPH).create("one", FILES, make_settings(), "/out")
-    command = [sys.executable, "-m", "tests.store.leasing_process", db.url]
+    url = db.engine.url.render_as_string(hide_password=False)
+    command = [sys.executable, "-m", "tests.store.leasing_process", url]
     journals = [tmp_path / f"journal-{i}" for i in range(2)]
     processes = [subprocess.Popen([*command, str(journal)], cwd=ROOT) for journal in journals]
     assert [process.wait(120) for process in processes] == [0, 0]

@@ -114,6 +114,15 @@ def test_other_annotations_are_another_input_but_share_results(place: Workplace,
     assert place.started() == ["last"]
 
 
+def test_a_folder_may_have_any_name(place: Workplace, tmp_path: Path) -> None:
+    strange = Workplace(tmp_path / "a::b ?#%20~ü")
+    strange.video.parent.mkdir(parents=True)
+    strange.video.write_bytes(place.video.read_bytes())
+    assert strange.run().state == "succeeded"
+    assert (strange.out / "summary.json").is_file()
+    assert strange.run().computed == 0
+
+
 def test_a_folder_with_files_of_somebody_else_is_refused(place: Workplace) -> None:
     place.out.mkdir()
     (place.out / "summary.json").write_text("mine")

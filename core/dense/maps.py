@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -50,6 +51,11 @@ def read_map(path: Path) -> DepthMap:
             )
     except (OSError, KeyError, ValueError) as error:
         raise StageFailed(f"depth map {path.name} cannot be read: {error}", where=path.name) from None
+
+
+def map_paths(folders: Iterable[Path]) -> dict[str, Path]:
+    """Paths of all depth maps in the result folders of chunks, by image name."""
+    return {path.name.removesuffix(".npz"): path for folder in folders for path in sorted(folder.glob("*.npz"))}
 
 
 @dataclass(frozen=True)

@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Iterator, Sequence
 from functools import partial
 
-from core.dense.maps import open_scene, write_map
+from core.dense import cuda
+from core.dense.maps import DenseScene, DepthMap, open_scene, write_map
 from core.dense.stereo import PhotometricStereo
+from core.dense.views import DenseView
 from core.stage import StageResult, StageTask
 
 
 def run(task: StageTask) -> StageResult:
-    """Write ``NAME.npz`` of views [start, end); facts n_views, valid_share."""
+    """Write ``NAME.npz`` of views [start, end); facts n_views, valid_share, method."""
     scene = open_scene(task.input("undistort"))
     views = scene.views[int(task.args["start"]) : int(task.args["end"])]
-    stereo = PhotometricStereo(scene, task.settings.dense, task.settings.seed, task.threads)
+    method = cuda.resolve_method(task.settings.dense)
+    maps = _on_cuda(task, scene, views) if method == "cuda" else _on_cpu(task, scene, views)
     shares = []
-    for number, view in enumerate(views):
-        found = stereo.depth_map(view, partial(_report, task, number, len(views), view.name))
-        write_map(task.out / f"{view.name}.npz", found)
+    for name, found in maps:
+        write_map(task.out / f"{name}.npz", found)
         shares.append(found.valid_share)
-    return StageResult({"n_views": len(views), "valid_share": round(sum(shares) / max(1, len(shares)), 4)})
+    share = round(sum(shares) / max(1, len(shares)), 4)
+    return StageResult({"n_views": len(shares), "valid_share": share, "method": method})
+
+
+def _on_cpu(task: StageTask, scene: DenseScene, views: Sequence[DenseView]) -> Iterator[tuple[str, DepthMap]]:
+    stereo = PhotometricStereo(scene, task.settings.dense, task.settings.seed, task.threads)
+    for number, view in enumerate(views):
+        yield view.name, stereo.depth_map(view, partial(_report, task, number, len(views), view.name))
+
+
+def _on_cuda(task: StageTask, scene: DenseScene, views: Sequence[DenseView]) -> Iterator[tuple[str, DepthMap]]:
+    workspace = task.out / "workspace"
+    cuda.photometric(scene, views, workspace, task.settings.dense)
+    yield from cuda.collect(workspace, views, "photometric").items()
+    shutil.rmtree(workspace)
 
 
 def _report(task: StageTask, number: int, total: int, name: str, done: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 
 from core.dense.fusion import fuse
-from core.dense.maps import open_scene
+from core.dense.maps import map_paths, open_scene
 from core.stage import StageResult, StageTask
 
 
@@ -13,7 +13,7 @@ def run(task: StageTask) -> StageResult:
     """Write ``fused.ply``; facts n_points and the method that made the depth maps."""
     scene = open_scene(task.input("undistort"))
     chunks = task.fan_in("geometric")
-    maps = {path.name.removesuffix(".npz"): path for _, folder in chunks for path in folder.glob("*.npz")}
+    maps = map_paths(folder for _, folder in chunks)
     methods = sorted({str(task.facts.get(key, {}).get("method", "cpu")) for key, _ in chunks})
     workspace = task.out / "workspace"
     task.report(0, 1, "fusing")

@@ -6,6 +6,7 @@ import cv2
 import pycolmap
 
 from core.dense.cameras import choose_pinhole
+from core.dense.cuda import resolve_method
 from core.dense.undistort import pinhole_model, undistort_map
 from core.dense.views import plan_views, sparse_views, write_views
 from core.errors import StageFailed
@@ -17,6 +18,7 @@ JPEG_QUALITY = 97
 def run(task: StageTask) -> StageResult:
     """Write ``images/``, ``mask.png``, ``sparse/`` and ``views.json``; facts n_views, width, height, focal_px."""
     settings = task.settings.dense
+    resolve_method(settings)  # a demand that cannot be met is refused before the work, not after
     model = pycolmap.Reconstruction(str(task.input("extend") / "model"))
     views = sparse_views(model)
     plan = plan_views(views, settings)

@@ -15,8 +15,6 @@ import numba
 import numpy as np
 import numpy.typing as npt
 import pycolmap
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from core.sparse.view_graph import Frames
 from core.viewgraph import PairTable
@@ -29,7 +27,7 @@ UNKNOWN = np.int64(-1)
 
 @dataclass(frozen=True)
 class Tracks:
-    """Connected components of the verified matches, longest first."""
+    """Keypoints that are one 3D point by the verified matches; one per frame at most. Longest tracks first."""
 
     offsets: npt.NDArray[np.int64]
     """(n + 1,) observations of each track."""
@@ -40,25 +38,33 @@ class Tracks:
 
 
 def build_tracks(graph: PairTable) -> Tracks:
-    """Join all inliers of `graph` into tracks; ties in length keep the order of the first observation."""
+    """Join the inliers of `graph` into tracks, ties in length in the order of their first observation.
+
+    Matches are joined one after the other, nearest frames first and of equally near ones the pair with more
+    inliers; a match that would put two keypoints of one frame into a track is passed over. Plain connected
+    components do not do: with matches of repeated texture a few of them swallow most of a window.
+    """
     if len(graph.inliers) == 0:
         empty = np.zeros(0, dtype=np.int64)
         return Tracks(np.zeros(1, dtype=np.int64), empty, empty)
     width = np.int64(graph.inliers.max()) + 1
-    pair = np.repeat(np.arange(len(graph.pairs)), graph.n_inliers)
-    nodes = graph.pairs[pair].astype(np.int64) * width + graph.inliers.astype(np.int64)
+    order = np.lexsort((graph.pairs[:, 0], -graph.n_inliers, np.abs(graph.pairs[:, 1] - graph.pairs[:, 0])))
+    row = np.concatenate([np.arange(graph.offsets[pair], graph.offsets[pair + 1]) for pair in order])
+    pair = np.repeat(order, graph.n_inliers[order])
+    nodes = graph.pairs[pair].astype(np.int64) * width + graph.inliers[row].astype(np.int64)
     used, edges = np.unique(nodes, return_inverse=True)
-    edges = edges.reshape(-1, 2)
-    matrix = coo_matrix((np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), shape=(len(used),) * 2)
-    n_tracks, label = connected_components(matrix, directed=False)
-    length = np.bincount(label, minlength=n_tracks)
-    first = np.full(n_tracks, len(used))
-    np.minimum.at(first, label, np.arange(len(used)))
-    rank = np.empty(n_tracks, dtype=np.int64)
-    rank[np.lexsort((first, -length))] = np.arange(n_tracks)
-    order = np.argsort(rank[label], kind="stable")
-    offsets = np.concatenate([[0], np.cumsum(np.sort(length)[::-1])]).astype(np.int64)
-    return Tracks(offsets, used[order] // width, used[order] % width)
+    frames, position = np.unique(used // width, return_inverse=True)
+    label = _join(edges.reshape(-1, 2).astype(np.int64), position.astype(np.int64), len(frames))
+    _, label, length = np.unique(label, return_inverse=True, return_counts=True)
+    # A label is the lowest node of its track, so that equal lengths stay in the order of first observations.
+    rank = np.empty(len(length), dtype=np.int64)
+    rank[np.argsort(-length, kind="stable")] = np.arange(len(length))
+    sorted_nodes = np.argsort(rank[label], kind="stable")
+    lengths = np.sort(length)[::-1]
+    many = int((lengths >= 2).sum())
+    offsets = np.concatenate([[0], np.cumsum(lengths[:many])]).astype(np.int64)
+    kept = used[sorted_nodes[: offsets[-1]]]
+    return Tracks(offsets, kept // width, kept % width)
 
 
 def choose_keypoints(tracks: Tracks, frames: Frames, count: int) -> dict[int, npt.NDArray[np.int64]]:
@@ -152,4 +158,44 @@ def _take_python(
     return taken
 
 
+def _join_python(edges: npt.NDArray[np.int64], frame: npt.NDArray[np.int64], n_frames: int) -> npt.NDArray[np.int64]:
+    """Union-find over `edges` (m, 2) in order; the lowest node of each track, for every node.
+
+    Every root carries the set of its frames as bits, so that a conflict costs a few operations.
+    """
+    n, words = len(frame), (n_frames + 63) // 64
+    parent = np.arange(n)
+    seen = np.zeros((n, words), dtype=np.uint64)
+    for node in range(n):
+        seen[node, frame[node] // 64] = np.uint64(1) << np.uint64(frame[node] % 64)
+    for k in range(len(edges)):
+        a, b = edges[k, 0], edges[k, 1]
+        while parent[a] != a:
+            parent[a] = parent[parent[a]]
+            a = parent[a]
+        while parent[b] != b:
+            parent[b] = parent[parent[b]]
+            b = parent[b]
+        if a == b:
+            continue
+        conflict = False
+        for word in range(words):
+            if seen[a, word] & seen[b, word] != 0:
+                conflict = True
+                break
+        if conflict:
+            continue
+        low, high = min(a, b), max(a, b)
+        parent[high] = low
+        for word in range(words):
+            seen[low, word] |= seen[high, word]
+    for node in range(n):
+        root = node
+        while parent[root] != root:
+            root = parent[root]
+        parent[node] = root
+    return parent
+
+
 _take: Any = numba.njit(cache=True)(_take_python)
+_join: Any = numba.njit(cache=True)(_join_python)

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from core.errors import BadInput, NoReconstruction, ResourceError, StageFailed
+from core.errors import NoReconstruction, StageFailed
 from core.graph import StageSpec, TaskSpec
 from core.settings import Settings
 from core.stage import Facts, StageResult, StageTask
@@ -121,10 +121,8 @@ def _behave(task: StageTask) -> None:
         _pass_time(task, 5.0, True)
         del ballast
     errors: dict[str, Exception] = {
-        "bad_input": BadInput("the video is odd"),
         "no_reconstruction": NoReconstruction("nothing moves", code="no_reconstruction"),
         "stage": StageFailed("no surface"),
-        "resource": ResourceError("no socket"),
         "memory": MemoryError(),
         "disk": OSError(errno.ENOSPC, "No space left on device"),
         "bug": ZeroDivisionError("division by zero"),

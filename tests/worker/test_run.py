@@ -65,7 +65,6 @@ def test_fanned_out_stages_get_one_thread_and_others_what_is_set(place: Workplac
     [
         ({"timeline.radius_fraction": 0.05}, ["last"]),
         ({"mesh.poisson_trim": 5.0}, ["join", "last"]),
-        ({"dense.views": 7}, []),
         # A split with another count has another digest, so every part is made anew from it.
         ({"matching.window": 1}, [key for key in ALL if key != "part/001"]),
     ],
@@ -174,12 +173,8 @@ def facts(place: Workplace, stage: str) -> dict[str, float]:
 @pytest.mark.parametrize(
     ("error", "code", "attempts"),
     [
-        ("bad_input", "bad_input", 1),
         ("no_reconstruction", "no_reconstruction", 1),
-        ("stage", "stage_failed", 1),
         ("bug", "internal", 1),
-        ("disk", "disk_full", 1),
-        ("resource", "resource", 3),
         ("memory", "oom", 3),
     ],
 )

@@ -1,0 +1,78 @@
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.settings import make_settings
+from core.settings.groups import CameraSettings
+from core.sparse.lens import choose_lens, focal_from_fov, fov_from_focal, principal_point, start_lens
+from core.stage import StageTask
+from core.stages import camera
+
+FRAMES = {"crop": [38, 79, 825, 604], "source_width": 960, "source_height": 720, "n_search": 60}
+
+
+def start(fov: float, focal: float, registered: int = 60, points: int = 4000, error: float = 0.5) -> dict[str, Any]:
+    return {
+        "fov_deg": fov,
+        "focal_px": focal,
+        "k1": 0.02,
+        "registered": registered,
+        "points3D": points,
+        "mean_reprojection_error_px": error,
+    }
+
+
+def test_an_equidistant_lens_of_180_degrees() -> None:
+    assert focal_from_fov(180.0, 960) == pytest.approx(480 / (math.pi / 2))
+    assert fov_from_focal(focal_from_fov(77.0, 960), 960) == pytest.approx(77.0)
+
+
+def test_the_principal_point_is_the_source_frames_centre() -> None:
+    assert principal_point(FRAMES, CameraSettings()) == (442.0, 281.0)
+    assert principal_point(FRAMES, CameraSettings(principal_point="crop")) == (393.5, 262.5)
+
+
+def test_a_start_is_a_prior() -> None:
+    lens = start_lens(FRAMES, CameraSettings(), 90.0)
+    assert lens.has_prior_focal_length
+    assert (lens.width, lens.height) == (787, 525)
+    assert list(lens.params) == pytest.approx([480 / math.radians(45), 442.0, 281.0, 0.0])
+
+
+def test_a_given_view_counts_before_everything() -> None:
+    chosen = choose_lens(FRAMES, CameraSettings(fov_deg=106.0), [start(40.0, 900.0)])
+    assert chosen["focal_from"] == "given"
+    assert chosen["params"] == pytest.approx([focal_from_fov(106.0, 960)] * 2 + [442.0, 281.0, 0, 0, 0, 0])
+
+
+def test_colmaps_default() -> None:
+    chosen = choose_lens(FRAMES, CameraSettings(focal="colmap"), [])
+    assert (chosen["focal_from"], chosen["params"][0], chosen["reason"]) == ("colmap", pytest.approx(944.4), "")
+
+
+def test_the_start_that_registers_more_wins_and_then_the_smaller_error() -> None:
+    starts = [start(40.0, 900.0, registered=30, error=0.1), start(55.0, 522.0, error=0.6), start(70.0, 520.0)]
+    chosen = choose_lens(FRAMES, CameraSettings(), starts)
+    assert (chosen["focal_from"], chosen["chosen_start_deg"], chosen["params"][0]) == ("estimated", 70.0, 520.0)
+    assert chosen["params"][4] == 0.02
+    assert chosen["agreement"] == pytest.approx(2 / 3)
+    assert len(chosen["starts"]) == 3
+
+
+def test_starts_that_found_nothing_fall_back_to_colmap_with_a_reason() -> None:
+    starts = [start(40.0, 1375.0, registered=0, points=0), start(55.0, 9000.0), start(70.0, 500.0, points=20)]
+    chosen = choose_lens(FRAMES, CameraSettings(), starts)
+    assert (chosen["focal_from"], chosen["reason"]) == ("colmap", "no_start_found_a_model")
+    assert chosen["agreement"] is None
+
+
+def test_the_stage_writes_what_it_says(tmp_path: Path) -> None:
+    facts = {"frames": FRAMES, "focal/040.0": start(40.0, 519.0)}
+    result = camera.run(StageTask("camera", {}, make_settings(), {}, facts, Path(), None, tmp_path))
+    assert json.loads((tmp_path / "camera.json").read_text()) == result.facts
+    assert result.facts["model"] == "OPENCV_FISHEYE"

@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.errors import NoReconstruction, StageFailed
+from core.settings import make_settings
+from core.sparse.reduce import reduce_cases, reduce_refined
+from core.stage import StageTask
+from core.stages import reduce_coarse, reduce_refine
+
+
+def row(name: str, registered: int, points: int, **more: Any) -> dict[str, Any]:
+    kind = "refine" if name.startswith("refine") else "coarse"
+    status, reason = ("succeeded", "") if registered else ("no_model", "no_parallax")
+    return {
+        "name": name,
+        "kind": kind,
+        "start": 0,
+        "end": 180,
+        "status": status,
+        "reason": reason,
+        "registered_images": registered,
+        "points3D": points,
+        **more,
+    }
+
+
+def task(facts: dict[str, Any], out: Path = Path()) -> StageTask:
+    """A reducer's task; every case's model is a file with the case's name."""
+    inputs = {key: out / key for key in facts if "/" in key}
+    for key, folder in inputs.items():
+        (folder / "model").mkdir(parents=True, exist_ok=True)
+        (folder / "model" / "points3D.bin").write_text(key)
+    return StageTask("reduce", {}, make_settings(), inputs, facts, Path(), None, out)
+
+
+def test_images_count_before_points() -> None:
+    facts = reduce_cases([row("seg_000", 179, 90_000), row("seg_001", 180, 10), row("seg_002", 180, 11)])
+    assert (facts["best"], facts["registered_images"], facts["points3D"], facts["kind"]) == (
+        "seg_002",
+        180,
+        11,
+        "coarse",
+    )
+    assert [item["name"] for item in facts["ranking"]] == ["seg_002", "seg_001", "seg_000"]
+
+
+def test_of_equal_cases_the_first_name_wins() -> None:
+    assert reduce_cases([row("seg_004", 9, 9), row("seg_001", 9, 9)])["best"] == "seg_001"
+
+
+def test_cases_without_model_are_left_out() -> None:
+    facts = reduce_cases([row("seg_000", 0, 0), row("seg_001", 3, 5)])
+    assert [item["name"] for item in facts["ranking"]] == ["seg_001"]
+
+
+def test_no_model_at_all_says_why() -> None:
+    rows = [row("seg_000", 0, 0), row("seg_001", 0, 0), row("seg_002", 0, 0, reason="too_few_matches")]
+    with pytest.raises(NoReconstruction) as raised:
+        reduce_cases(rows)
+    assert raised.value.code == "no_reconstruction"
+    assert "no_parallax in 2 of 3 cases" in raised.value.message
+    assert "too_few_matches in 1 of 3 cases" in raised.value.message
+
+
+def test_a_refined_case_must_be_strictly_better() -> None:
+    best = row("seg_006", 180, 500)
+    assert reduce_refined(best, [row("refine_000", 180, 500), row("refine_001", 0, 0)])["best"] == "seg_006"
+    facts = reduce_refined(best, [row("refine_000", 180, 501), row("refine_001", 170, 900)])
+    assert (facts["best"], facts["kind"]) == ("refine_000", "refine")
+    assert [item["name"] for item in facts["ranking"]] == ["refine_000", "seg_006", "refine_001"]
+
+
+def test_the_stages_take_the_rows_from_the_facts(tmp_path: Path) -> None:
+    facts = {
+        "coarse/seg_000": row("seg_000", 20, 7),
+        "coarse/seg_001": row("seg_001", 30, 7),
+        "refine/refine_000": row("refine_000", 31, 1),
+    }
+    coarse = reduce_coarse.run(task({k: v for k, v in facts.items() if k.startswith("coarse")}, tmp_path)).facts
+    assert coarse["best"] == "seg_001"
+    refined = {k: v for k, v in facts.items() if k != "coarse/seg_000"} | {"reduce_coarse": coarse}
+    assert reduce_refine.run(task(refined, tmp_path)).facts["best"] == "refine_000"
+    assert (tmp_path / "model" / "points3D.bin").read_text() == "refine/refine_000"
+
+
+def test_a_winner_without_its_row_is_a_broken_plan() -> None:
+    with pytest.raises(StageFailed):
+        reduce_refine.run(task({"reduce_coarse": {"best": "seg_001"}}))

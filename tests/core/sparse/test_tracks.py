@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+import numpy as np
+
+from core.sparse.tracks import build_tracks, choose_keypoints, thin_cache
+from core.sparse.view_graph import Frames, within
+from core.verification import camera_from_dict
+from core.viewgraph import PairTable
+from tests.core.sparse.scene import HEIGHT, LENS, WIDTH, Scene, make_scene, view_graph
+
+
+def table(matches: dict[tuple[int, int], list[tuple[int, int]]]) -> PairTable:
+    n = len(matches)
+    counts = [len(rows) for rows in matches.values()]
+    return PairTable(
+        np.array(list(matches), np.int32).reshape(-1, 2),
+        np.zeros(n, np.uint8),
+        np.array(counts, np.int32),
+        np.full(n, 2, np.uint8),
+        np.cumsum([0, *counts]).astype(np.int64),
+        np.array([row for rows in matches.values() for row in rows], np.uint32).reshape(-1, 2),
+        np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)),
+        np.zeros((n, 3)),
+        np.full(n, 5.0, np.float32),
+    )
+
+
+def listed(graph: PairTable) -> list[list[tuple[int, int]]]:
+    tracks = build_tracks(graph)
+    return [
+        list(zip(tracks.frame[a:b].tolist(), tracks.keypoint[a:b].tolist(), strict=True))
+        for a, b in zip(tracks.offsets[:-1], tracks.offsets[1:], strict=True)
+    ]
+
+
+def frames_of(scene: Scene) -> Frames:
+    indices = tuple(range(len(scene.features)))
+    keypoints = tuple(features.keypoints.astype(np.float64) for features in scene.features)
+    return Frames(indices, tuple(f"{i:04d}.jpg" for i in indices), keypoints, camera_from_dict(LENS))
+
+
+def test_matches_join_to_tracks_longest_first() -> None:
+    graph = table({(0, 1): [(0, 4), (2, 2)], (1, 2): [(4, 7)]})
+    assert listed(graph) == [[(0, 0), (1, 4), (2, 7)], [(0, 2), (1, 2)]]
+
+
+def test_a_track_never_holds_two_keypoints_of_one_frame() -> None:
+    # Frame 2 closes the loop at another keypoint of frame 0: the far match loses, the near ones stay.
+    graph = table({(0, 1): [(0, 0)], (1, 2): [(0, 0)], (0, 2): [(9, 0)]})
+    assert listed(graph) == [[(0, 0), (1, 0), (2, 0)]]
+
+
+def test_no_matches_give_no_tracks() -> None:
+    assert listed(table({})) == []
+
+
+def test_the_window_keeps_pairs_inside_it() -> None:
+    graph = within(table({(0, 1): [(0, 0)], (1, 2): [(1, 1), (2, 2)], (2, 5): [(3, 3)]}), 1, 4)
+    assert graph.pairs.tolist() == [[1, 2]]
+    assert graph.inliers.tolist() == [[1, 1], [2, 2]]
+
+
+def test_tracks_are_those_of_the_scene() -> None:
+    scene = make_scene(10, 300)
+    tracks = build_tracks(view_graph(scene))
+    for a, b in zip(tracks.offsets[:-1], tracks.offsets[1:], strict=True):
+        points = {int(scene.point[f][k]) for f, k in zip(tracks.frame[a:b], tracks.keypoint[a:b], strict=True)}
+        assert len(points) == 1
+
+
+def test_chosen_keypoints_are_few_spread_and_connected() -> None:
+    scene = make_scene(10, 1500)
+    graph, frames = view_graph(scene), frames_of(scene)
+    chosen = choose_keypoints(build_tracks(graph), frames, 80)
+    for frame, keypoints in chosen.items():
+        assert 40 <= len(keypoints) <= 160 < len(scene.features[frame].keypoints)
+        xy = frames.keypoints[frame][keypoints]
+        assert np.ptp(xy[:, 0]) > 0.7 * WIDTH
+        assert np.ptp(xy[:, 1]) > 0.7 * HEIGHT
+    cache = thin_cache(graph, frames, chosen, 15)
+    assert cache.num_images() == 10
+    assert cache.correspondence_graph.num_image_pairs() == len(graph.pairs)
+
+
+def test_the_thin_cache_keeps_places_and_matches() -> None:
+    scene = make_scene(4, 600)
+    graph, frames = view_graph(scene), frames_of(scene)
+    chosen = choose_keypoints(build_tracks(graph), frames, 100)
+    cache = thin_cache(graph, frames, chosen, 15)
+    matches = cache.correspondence_graph.extract_matches_between_images(1, 2)
+    assert len(matches) >= 15
+    for first, second in matches:
+        a, b = chosen[0][int(first)], chosen[1][int(second)]
+        assert scene.point[0][a] == scene.point[1][b]
+        np.testing.assert_allclose(cache.image(1).points2D[int(first)].xy, frames.keypoints[0][a])

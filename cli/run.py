@@ -37,7 +37,8 @@ def command(parsed: argparse.Namespace) -> int:
         )
     code = _code(outcome)
     if isinstance(display, progress.JsonDisplay):
-        display.line({"event": "result", "exit_code": code, **_record(outcome)})
+        labels = {"label": wanted.label, "external_id": wanted.external_id}
+        display.line({"event": "result", "exit_code": code, **labels, **_record(outcome)})
     elif outcome.state in ("succeeded", "partial", "failed"):
         print(report.text(outcome))
     if code == exits.INTERRUPTED:

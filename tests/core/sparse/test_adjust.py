@@ -7,7 +7,7 @@ import pycolmap
 import pytest
 
 from core.settings.groups import MapperSettings
-from core.sparse.adjust import MIN_IMAGES, adjust, free_principal_point
+from core.sparse.adjust import MIN_IMAGES, adjust, adjustment_options, free_principal_point
 from core.sparse.cases import Case, run_case
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
@@ -95,4 +95,17 @@ def test_a_right_principal_point_stays_exactly(model, cache):
 
 def test_few_images_do_not_determine_a_principal_point(graph):
     few = run_case(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0)).model
-    assert free_principal_point(few).reason == "few_images"
+    assert free_principal_point(few, adjustment_options(True, 1.0, 1)).reason == "few_images"
+
+
+def test_mismatches_move_cameras_less_when_they_count_less(model, cache, scene):
+    start = pycolmap.Reconstruction(model)
+    rng = np.random.default_rng(1)
+    for image_id in start.reg_image_ids():
+        points = start.image(image_id).points2D
+        for index in rng.choice(len(points), len(points) // 8, replace=False):
+            points[index].xy = points[index].xy + np.array([2.5, 1.0])
+    robust, squares = (
+        adjust(start, cache, OPTIONS, refine_principal_point=False, loss_scale_px=scale).model for scale in (0.5, 0.0)
+    )
+    assert np.median(center_errors(robust, scene)) < np.median(center_errors(squares, scene))

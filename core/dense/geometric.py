@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from core.dense.maps import DenseScene, DepthMap, read_map
 from core.dense.patchmatch.consistency import count_consistent
 from core.dense.patchmatch.kernels import Sources
-from core.dense.patchmatch.matcher import ignore
+from core.dense.patchmatch.matcher import fit_planes, ignore
 from core.dense.patchmatch.planes import from_normals
 from core.dense.stereo import PhotometricStereo, planes_to_map
 from core.dense.views import DenseView
@@ -67,12 +67,13 @@ class GeometricFilter:
         for number in range(settings.geometric_passes):
             matcher.sweep(planes, pairs, 100 + number, STEP * 0.5**number, DRAWS)
             check((number + 1) / (settings.geometric_passes + 1))
+        matcher.smooth(planes, pairs)
         self._stereo.matcher(view, 0).score(planes)
         agreeing = self._agreeing(view, planes, matcher.sources)
         cost = planes[..., 3]
         keep = matcher.mask & (planes[..., 0] > 0) & (cost <= 1.0 - settings.min_ncc)
         keep &= agreeing >= min(settings.min_consistent, len(view.sources))
-        return planes_to_map(planes, pinhole, keep)
+        return planes_to_map(fit_planes(planes, keep), pinhole, keep)
 
     def _agreeing(self, view: DenseView, planes: F32, sources: Sources) -> NDArray[np.uint8]:
         """(h, w) number of sources that agree."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from core.dense.cameras import Pinhole, Pose
 from core.dense.patchmatch.kernels import RADIUS, Patch, Sources, pack, scratch
 from core.dense.patchmatch.planes import upsample
+from core.dense.patchmatch.smooth import fit_rows
 from core.dense.patchmatch.sweep import score_rows, sweep_rows
 
 F32 = NDArray[np.float32]
@@ -24,6 +25,12 @@ Mask = NDArray[np.bool_]
 
 COLOUR_SIGMA = 30.0
 """Grey levels; the bilateral weight of a sample falls off with its difference to the centre."""
+
+SMOOTH_MARGIN = 0.02
+"""A plane fitted to the neighbourhood may cost so much more than the pixel's own."""
+FIT_RADIUS = 3
+FIT_TOLERANCE = (0.02, 0.005)
+"""Relative inverse depth by which neighbours may differ in the two rounds of a fit."""
 
 
 @dataclass(frozen=True)
@@ -133,17 +140,37 @@ class Matcher:
         for colour in (0, 1):
             self._over_rows(partial(work, colour, np.uint64(_mix(self.key, 2 * number + colour))))
 
+    def smooth(self, planes: F32, pairs: NDArray[np.uint8]) -> None:
+        """Take the local plane fit of every pixel where it matches about as well; in place."""
+        fitted = fit_planes(planes, self.mask, self.threads)
+        fitted_pairs = self.score(fitted)
+        better = self.mask & (fitted[..., 3] < planes[..., 3] + SMOOTH_MARGIN)
+        planes[better] = fitted[better]
+        pairs[better] = fitted_pairs[better]
+
     def _scratch(self) -> Patch:
         return scratch(len(self.sources.A), min(self.best_views, len(self.sources.A)))
 
     def _over_rows(self, work: Callable[[int, int], Any]) -> None:
-        h = self.grey.shape[0]
-        if self.threads <= 1:
-            work(0, h)
-            return
-        edges = np.linspace(0, h, 4 * self.threads + 1).astype(int)
-        with ThreadPoolExecutor(self.threads) as pool:
-            list(pool.map(work, edges[:-1].tolist(), edges[1:].tolist()))
+        over_rows(work, self.grey.shape[0], self.threads)
+
+
+def over_rows(work: Callable[[int, int], Any], height: int, threads: int) -> None:
+    """Call `work(y0, y1)` on blocks of rows, side by side when there are threads for it."""
+    if threads <= 1:
+        work(0, height)
+        return
+    edges = np.linspace(0, height, 4 * threads + 1).astype(int)
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, edges[:-1].tolist(), edges[1:].tolist()))
+
+
+def fit_planes(planes: F32, valid: Mask, threads: int = 1) -> F32:
+    """(h, w, 4) local plane fits of the valid pixels, see `smooth.fit_rows`; costs are those of `planes`."""
+    out = planes.copy()
+    wide, narrow = np.float32(FIT_TOLERANCE[0]), np.float32(FIT_TOLERANCE[1])
+    over_rows(lambda y0, y1: fit_rows(planes, valid, FIT_RADIUS, wide, narrow, out, y0, y1), len(planes), threads)
+    return out
 
 
 def _colour_weight() -> F32:
@@ -194,4 +221,5 @@ def coarse_to_fine(
             matcher.sweep(planes, pairs, number, effort.step * 0.5**number, effort.draws)
             done += 4.0**-level
             check(done / total)
+        matcher.smooth(planes, pairs)
     return planes

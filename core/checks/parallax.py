@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,36 +10,29 @@ from numpy.typing import NDArray
 
 from core.flags import Flag
 
-CALIBRATED = 2
-"""COLMAP's two-view configuration of a pair that moved past a surface that is not a plane."""
+MAX_STILL_SHARE = 0.5
+"""More cases than this that end without parallax speak for the whole clip."""
 
-MIN_INLIERS = 30
-MIN_PAIR_ANGLE_DEG = 0.25
-"""A pair of neighbouring frames below this median angle has no parallax worth the name."""
-MIN_PARALLAX_SHARE = 0.02
 MIN_MODEL_ANGLE_DEG = 1.8
 """COLMAP drops points below 1.5 degrees, so a median just above it means that little is left."""
 
 
-def graph_parallax(graph: Mapping[str, NDArray[Any]]) -> Flag | None:
-    """Whether the verified pairs show parallax at all; for runs that end without a model.
+def cases_parallax(rows: Sequence[Mapping[str, Any]]) -> Flag | None:
+    """Whether the search found no model because the views do not differ in place.
+
+    A pair of neighbouring frames cannot tell: keypoint noise of a turning camera triangulates under up to 0.3
+    degrees. Each case therefore tries one rotation on its longest tracks (`core.sparse.parallax`).
 
     Args:
-        graph: arrays of ``graph.npz``: config, offsets, triangulation_angle_deg, each over (m,) pairs.
+        rows: of cases that ended, each with `status` and `reason`.
 
     Returns:
-        `no_parallax` with the share of strong pairs that are calibrated and see their points under
-        a sufficient angle; None when the share suffices or no pair is strong enough to tell.
+        `no_parallax` with the share of such cases, when none has a model and most end for that reason.
     """
-    strong = np.diff(graph["offsets"]) >= MIN_INLIERS
-    if not strong.any():
+    still = sum(row["reason"] == "no_parallax" for row in rows)
+    if not rows or any(row["status"] == "succeeded" for row in rows) or still <= MAX_STILL_SHARE * len(rows):
         return None
-    angle = np.nan_to_num(graph["triangulation_angle_deg"])
-    with_depth = strong & (graph["config"] == CALIBRATED) & (angle >= MIN_PAIR_ANGLE_DEG)
-    share = float(with_depth.sum() / strong.sum())
-    if share >= MIN_PARALLAX_SHARE:
-        return None
-    return Flag("no_parallax", "error", share, MIN_PARALLAX_SHARE, f"{int(strong.sum())} pairs of frames")
+    return Flag("no_parallax", "error", still / len(rows), MAX_STILL_SHARE, f"{still} of {len(rows)} cases")
 
 
 def model_parallax(angles_deg: NDArray[np.float64]) -> Flag | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
+from core.checks.parallax import cases_parallax
 from core.flags import Flag
 from core.report.funnel import funnel, losses, support_counts
 from core.report.record import RunRecord
@@ -19,8 +20,14 @@ _SEVERITY_RANK = {"error": 0, "warning": 1, "info": 2}
 
 
 def collect_flags(record: RunRecord) -> list[Flag]:
-    """All flags that stages raised (facts `flags` and `checks`) and those of the settings, worst first, none twice."""
+    """All flags that stages raised (facts `flags` and `checks`), those of the search and of the settings.
+
+    Worst first, none twice.
+    """
     flags = _settings_flags(record)
+    still = cases_parallax([task.facts for task in record.tasks if task.stage in ("coarse", "refine") and task.facts])
+    if still is not None:
+        flags.append(still)
     for task in record.tasks:
         for row in [*task.facts.get("flags", ()), *task.facts.get("checks", ())]:
             flags.append(Flag.from_dict(row))

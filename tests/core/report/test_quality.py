@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -113,6 +114,19 @@ def test_flags_keep_value_threshold_and_place() -> None:
         "threshold": 1.0,
         "where": "model",
     }
+
+
+def test_cases_without_parallax_flag_the_clip() -> None:
+    record = failed_record()
+    still = [
+        replace(task, facts={**task.facts, "flags": [], "status": "no_model", "reason": "no_parallax"})
+        for task in record.tasks
+        if task.facts
+    ]
+    flags = build_report(replace(record, tasks=still)).quality["flags"]
+    assert [(flag["code"], flag["severity"], flag["where"]) for flag in flags] == [
+        ("no_parallax", "error", "1 of 1 cases")
+    ]
 
 
 def test_a_failed_run_has_all_tables_without_inventing_numbers() -> None:

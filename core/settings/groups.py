@@ -149,7 +149,7 @@ class MapperSettings(Group):
         "tuned", "bundle adjustment during the window search", source="ENGINES 3"
     )
     search_tracks: int = option(
-        0, "keypoints per image that take part in the search, longest tracks first; 0 = all", source="measured", ge=0
+        400, "keypoints per image that take part in the search, longest tracks first; 0 = all", source="measured", ge=0
     )
 
 

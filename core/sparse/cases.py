@@ -71,67 +71,67 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
         progress: see `core.sparse.mapper.Progress`.
     """
     frames = read_frames(case.graph / "database.db", case.start, case.end)
-    graph = within(read_table(case.graph / "graph.npz"), case.start, case.end)
-    models: list[Any] = []
-    mode = "scratch"
-    tracks = build_tracks(graph)
-    reason = _why_not(graph, frames, tracks, case.settings)
-    if not reason:
-        full = open_cache(case.graph / "database.db", frames.names, MIN_MATCHES)
-        search = _search_cache(case, graph, frames, tracks, full)
-        warm = None if start_model is None else _map_warm(case, search, full, start_model, progress)
-        if warm is not None and not _is_worse(warm, start_model, len(frames.names)):
-            mode, models = "warm", [warm]
-        else:
-            mode = "scratch" if start_model is None else "warm_then_scratch"
-            models = _map_scratch(case, search, full, graph, progress)
-            # A wrong model can have more points than a right one, its tracks being broken: only images count here.
-            if warm is not None and warm.num_reg_images() > max([m.num_reg_images() for m in models], default=0):
-                models = [warm]
-    best = best_model(models)
+    table = within(read_table(case.graph / "graph.npz"), case.start, case.end)
+    tracks = build_tracks(table)
+    n_frames = len(frames.names)
+    reason = _why_not(table, frames, tracks, case.settings)
+    if reason:
+        return CaseResult(n_frames, 0, "scratch", None, NO_MODEL, reason)
+    window = _Window(case, frames, table, tracks, progress)
+    warm = None if start_model is None else window.map_warm(start_model)
+    if warm is not None and not _is_worse(warm, start_model, n_frames):
+        return CaseResult(n_frames, 1, "warm", warm, model_stats(warm))
+    mode = "scratch" if start_model is None else "warm_then_scratch"
+    n_models, best = window.map_scratch()
+    # A wrong model can have more points than a right one, its tracks being broken: only images count here.
+    if warm is not None and (best is None or warm.num_reg_images() > best.num_reg_images()):
+        n_models, best = 1, warm
     if best is None:
-        return CaseResult(len(frames.names), 0, mode, None, NO_MODEL, reason or "no_initial_pair")
-    return CaseResult(len(frames.names), len(models), mode, best, model_stats(best))
+        return CaseResult(n_frames, 0, mode, None, NO_MODEL, "no_initial_pair")
+    return CaseResult(n_frames, n_models, mode, best, model_stats(best))
 
 
 NO_MODEL = ModelStats(0, 0, 0.0, 0.0, 0.0)
 
 
-def _search_cache(case: Case, graph: PairTable, frames: Frames, tracks: Tracks, full: Any) -> Any:
-    """The cache that poses are searched on: `full` itself, or one with few keypoints per frame."""
-    if case.settings.search_tracks == 0:
-        return full
-    chosen = choose_keypoints(tracks, frames, case.settings.search_tracks)
-    return thin_cache(graph, frames, chosen, MIN_MATCHES)
+class _Window:
+    """The caches of one window: all keypoints, and those that poses are searched on."""
 
+    def __init__(self, case: Case, frames: Frames, table: PairTable, tracks: Tracks, progress: Progress | None) -> None:
+        self._settings, self._table, self._tracks, self._progress = case.settings, table, tracks, progress
+        tuned = case.settings.bundle_adjustment == "tuned"
+        self._options = mapper_options(case.settings, threads=case.threads, seed=case.seed, tuned=tuned)
+        self._full = open_cache(case.graph / "database.db", frames.names, MIN_MATCHES)
+        self._search = self._full
+        if case.settings.search_tracks:
+            chosen = choose_keypoints(tracks, frames, case.settings.search_tracks)
+            self._search = thin_cache(table, frames, chosen, MIN_MATCHES)
 
-def _options(case: Case) -> Any:
-    tuned = case.settings.bundle_adjustment == "tuned"
-    return mapper_options(case.settings, threads=case.threads, seed=case.seed, tuned=tuned)
+    def map_scratch(self) -> tuple[int, Any | None]:
+        """How many models there are, and the best of them with all its points."""
+        pairs: list[tuple[int, int]] = []
+        if self._settings.initial_pair == "graph":
+            ranked = rank_initial_pairs(self._table, self._settings.init_min_num_inliers)
+            pairs = [(a + 1, b + 1) for a, b in ranked]  # image_id = index + 1
+        models = map_images(self._search, self._options, pairs=pairs, progress=self._progress)
+        best = best_model(models)
+        return len(models), None if best is None else self._whole(best)
 
+    def map_warm(self, start_model: Any) -> Any | None:
+        """Go on from the poses of `start_model` that fall into the window; None when that leads nowhere."""
+        model = transfer_poses(self._search, start_model)
+        if model.num_reg_images() < self._settings.min_model_size:
+            return None
+        if model.num_reg_images() < self._search.num_images():
+            triangulate(self._search, model, self._options)
+            grown = map_images(self._search, self._options, start_model=model, progress=self._progress)
+            return self._whole(grown[0]) if grown else None
+        return densify(self._full, model, self._tracks, self._options)
 
-def _map_scratch(case: Case, search: Any, full: Any, graph: PairTable, progress: Progress | None) -> list[Any]:
-    pairs: list[tuple[int, int]] = []
-    if case.settings.initial_pair == "graph":
-        ranked = rank_initial_pairs(graph, case.settings.init_min_num_inliers)
-        pairs = [(a + 1, b + 1) for a, b in ranked]  # image_id = index + 1
-    models = map_images(search, _options(case), pairs=pairs, progress=progress)
-    if search is full:
-        return models
-    best = best_model(models)
-    # Only the best is worth its points; the others count in the row no more than COLMAP's discarded tries.
-    return [] if best is None else [densify(full, best, _options(case))]
-
-
-def _map_warm(case: Case, search: Any, full: Any, start_model: Any, progress: Progress | None) -> Any | None:
-    """Go on from the poses of `start_model` that fall into the window; None when that leads nowhere."""
-    model = transfer_poses(search, start_model)
-    if model.num_reg_images() < case.settings.min_model_size:
-        return None
-    if model.num_reg_images() < search.num_images():
-        triangulate(search, model, _options(case), adjust=False)
-        model = best_model(map_images(search, _options(case), start_model=model, progress=progress))
-    return None if model is None else densify(full, model, _options(case))
+    def _whole(self, model: Any) -> Any:
+        if self._search is self._full:
+            return model
+        return densify(self._full, model, self._tracks, self._options)
 
 
 def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:
@@ -145,11 +145,11 @@ def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:
     return errors[0] > ERROR_RISE * errors[1]
 
 
-def _why_not(graph: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> str:
+def _why_not(table: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> str:
     """Code of what makes mapping pointless; empty when nothing does."""
     if len(frames.names) < settings.min_model_size:
         return "too_few_frames"
-    if not (graph.n_inliers >= settings.init_min_num_inliers).any():
+    if not (table.n_inliers >= settings.init_min_num_inliers).any():
         return "too_few_matches"
     residual = rotation_residual_px(tracks, frames)
     return "no_parallax" if residual is not None and residual < MIN_RESIDUAL_PX else ""

@@ -1,4 +1,4 @@
-"""From known poses to a full model: transfer them, triangulate every track, adjust briefly."""
+"""From known poses to a full model: transfer the poses, triangulate every track."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import Any
 
 import pycolmap
 
-ADJUSTMENT_ITERATIONS = 10
+from core.sparse.tracks import Tracks
+from core.sparse.triangulation import add_track_points
 
 
 def transfer_poses(cache: Any, model: Any) -> Any:
@@ -26,32 +27,31 @@ def transfer_poses(cache: Any, model: Any) -> Any:
     return target
 
 
-def triangulate(cache: Any, model: Any, options: Any, *, adjust: bool) -> None:
-    """Triangulate the verified tracks of the registered images in place, poses as they are.
-
-    With `adjust` one global bundle adjustment follows; it moves poses and lens by the tracks that cover every
-    image and the other points after them (COLMAP's `ba_global_ignore_redundant_points3D`: here 30 % faster than
-    four iterations over all, with better poses), then tracks are completed and filtered again.
-    """
+def triangulate(cache: Any, model: Any, options: Any) -> None:
+    """Triangulate the verified tracks of the registered images in place, image by image as COLMAP does."""
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(model)
-    triangulation, mapping = options.get_triangulation(), options.get_mapper()
     for image_id in sorted(model.reg_image_ids()):
-        mapper.triangulate_image(triangulation, image_id)
-    mapper.complete_and_merge_tracks(triangulation)
-    mapper.filter_points(mapping)
-    if adjust and model.num_points3D() > 0:
-        adjustment = options.get_global_bundle_adjustment()
-        adjustment.ceres.solver_options.max_num_iterations = ADJUSTMENT_ITERATIONS
-        mapping.ba_global_ignore_redundant_points3D = True
-        mapper.adjust_global_bundle(mapping, adjustment)
-        mapper.complete_and_merge_tracks(triangulation)
-        mapper.filter_points(mapping)
-    mapper.end_reconstruction(False)
+        mapper.triangulate_image(options.get_triangulation(), image_id)
+    _complete(mapper, options)
 
 
-def densify(cache: Any, model: Any, options: Any) -> Any:
-    """Full model over `cache` from the poses of `model`: every verified track triangulated and adjusted."""
+def densify(cache: Any, model: Any, tracks: Tracks, options: Any) -> Any:
+    """Full model over `cache` from the camera and poses of `model`: every track triangulated, none adjusted.
+
+    Poses come out of a bundle adjustment over the longest tracks; another one over all of them cost more than the
+    search and moved the poses of the development clip by less than their error (0.033 against 0.046 mm).
+    """
     full = transfer_poses(cache, model)
-    triangulate(cache, full, options, adjust=True)
+    add_track_points(full, tracks)
+    mapper = pycolmap.IncrementalMapper(cache)
+    mapper.begin_reconstruction(full)
+    _complete(mapper, options)
     return full
+
+
+def _complete(mapper: Any, options: Any) -> None:
+    """Complete and merge tracks over the correspondence graph, filter, and let go of the model."""
+    mapper.complete_and_merge_tracks(options.get_triangulation())
+    mapper.filter_points(options.get_mapper())
+    mapper.end_reconstruction(False)

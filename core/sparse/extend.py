@@ -45,17 +45,18 @@ def register_rest(
     """
     frames = read_frames(graph / "database.db", 0, n_frames)
     table = read_table(graph / "graph.npz")
-    chosen = choose_keypoints(build_tracks(table), frames, settings.search_tracks or EXTEND_TRACKS)
+    tracks = build_tracks(table)
+    chosen = choose_keypoints(tracks, frames, settings.search_tracks or EXTEND_TRACKS)
     thin = thin_cache(table, frames, chosen, MIN_MATCHES)
     model = transfer_poses(thin, winner)
     options = mapper_options(settings, threads=threads, seed=seed, tuned=True)
-    triangulate(thin, model, options, adjust=False)
+    triangulate(thin, model, options)
     if model.num_reg_images() < len(frames.names):
         options.fix_existing_frames = True
         model = map_images(thin, options, start_model=model, progress=progress)[0]
         options.fix_existing_frames = False
     full = open_cache(graph / "database.db", (), MIN_MATCHES)
-    dense = densify(full, model, options)
+    dense = densify(full, model, tracks, options)
     if dense.num_reg_images() < len(frames.names):
         dense = map_images(full, options, start_model=dense, progress=progress)[0]
     return dense

@@ -98,7 +98,8 @@ class _Window:
     """The caches of one window: all keypoints, and those that poses are searched on."""
 
     def __init__(self, case: Case, frames: Frames, table: PairTable, tracks: Tracks, progress: Progress | None) -> None:
-        self._settings, self._table, self._tracks, self._progress = case.settings, table, tracks, progress
+        self._settings, self._frames, self._progress = case.settings, frames, progress
+        self._table, self._tracks = table, tracks
         tuned = case.settings.bundle_adjustment == "tuned"
         self._options = mapper_options(case.settings, threads=case.threads, seed=case.seed, tuned=tuned)
         self._full = open_cache(case.graph / "database.db", frames.names, MIN_MATCHES)
@@ -126,12 +127,12 @@ class _Window:
             triangulate(self._search, model, self._options)
             grown = map_images(self._search, self._options, start_model=model, progress=self._progress)
             return self._whole(grown[0]) if grown else None
-        return densify(self._full, model, self._tracks, self._options)
+        return densify(self._full, model, self._tracks, self._frames, self._options)
 
     def _whole(self, model: Any) -> Any:
         if self._search is self._full:
             return model
-        return densify(self._full, model, self._tracks, self._options)
+        return densify(self._full, model, self._tracks, self._frames, self._options)
 
 
 def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:

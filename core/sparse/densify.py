@@ -8,6 +8,7 @@ import pycolmap
 
 from core.sparse.tracks import Tracks
 from core.sparse.triangulation import add_track_points
+from core.sparse.view_graph import Frames
 
 
 def transfer_poses(cache: Any, model: Any) -> Any:
@@ -36,14 +37,14 @@ def triangulate(cache: Any, model: Any, options: Any) -> None:
     _complete(mapper, options)
 
 
-def densify(cache: Any, model: Any, tracks: Tracks, options: Any) -> Any:
+def densify(cache: Any, model: Any, tracks: Tracks, frames: Frames, options: Any) -> Any:
     """Full model over `cache` from the camera and poses of `model`: every track triangulated, none adjusted.
 
     Poses come out of a bundle adjustment over the longest tracks; another one over all of them cost more than the
     search and moved the poses of the development clip by less than their error (0.033 against 0.046 mm).
     """
     full = transfer_poses(cache, model)
-    add_track_points(full, tracks)
+    add_track_points(full, tracks, frames)
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(full)
     _complete(mapper, options)

@@ -56,7 +56,7 @@ def register_rest(
         model = map_images(thin, options, start_model=model, progress=progress)[0]
         options.fix_existing_frames = False
     full = open_cache(graph / "database.db", (), MIN_MATCHES)
-    dense = densify(full, model, tracks, options)
+    dense = densify(full, model, tracks, frames, options)
     if dense.num_reg_images() < len(frames.names):
         dense = map_images(full, options, start_model=dense, progress=progress)[0]
     return dense

@@ -15,6 +15,7 @@ import numpy.typing as npt
 import pycolmap
 
 from core.sparse.tracks import Tracks
+from core.sparse.view_graph import Frames
 
 MAX_ERROR_PX = 4.0
 """COLMAP's `filter_max_reproj_error`."""
@@ -26,12 +27,13 @@ MIN_LENGTH = 3
 """Two views cannot contradict each other: COLMAP's `ignore_two_view_tracks`."""
 
 
-def add_track_points(model: Any, tracks: Tracks) -> int:
+def add_track_points(model: Any, tracks: Tracks, frames: Frames) -> int:
     """Add the points of `tracks` that the registered images of `model` see well; returns how many.
 
     Args:
         model: with poses and without points; image_id = frame index + 1.
         tracks: keypoint indices are those of the model's images.
+        frames: keypoints of these images, and maybe of more.
     """
     ids = sorted(model.reg_image_ids())
     if not ids or len(tracks.frame) == 0:
@@ -39,7 +41,7 @@ def add_track_points(model: Any, tracks: Tracks) -> int:
     row = np.full(int(max(ids[-1], tracks.frame.max() + 1)) + 1, -1, dtype=np.int64)
     row[ids] = np.arange(len(ids))
     observation_row = row[tracks.frame + 1]
-    rays, centers = _world_rays(model, ids, tracks, observation_row)
+    rays, centers = _world_rays(model, ids, tracks, frames, observation_row)
     focal = next(iter(model.cameras.values())).mean_focal_length()
     limits = (MAX_ERROR_PX / focal, np.cos(np.radians(MIN_ANGLE_DEG)))
     points, kept = _solve(tracks.offsets, observation_row, rays, centers, *limits)
@@ -53,20 +55,23 @@ def add_track_points(model: Any, tracks: Tracks) -> int:
 
 
 def _world_rays(
-    model: Any, ids: list[int], tracks: Tracks, row: npt.NDArray[np.int64]
+    model: Any, ids: list[int], tracks: Tracks, frames: Frames, row: npt.NDArray[np.int64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Unit rays (total, 3) in the world of all observations in registered images, and centres (images, 3)."""
+    keypoints = dict(zip(frames.indices, frames.keypoints, strict=True))
     rays = np.zeros((len(row), 3))
     centers = np.zeros((len(ids), 3))
     order = np.argsort(row, kind="stable")
     starts = np.searchsorted(row[order], np.arange(len(ids) + 1))
     for i, image_id in enumerate(ids):
         image = model.image(image_id)
+        centers[i] = image.projection_center()
         mine = order[starts[i] : starts[i + 1]]
-        xy = np.array([image.points2D[int(k)].xy for k in tracks.keypoint[mine]]).reshape(-1, 2)
+        if len(mine) == 0:
+            continue
+        xy = keypoints[image_id - 1][tracks.keypoint[mine]]
         in_camera = np.asarray(image.camera.cam_ray_from_img(xy))
         rays[mine] = in_camera @ image.cam_from_world().rotation.matrix()
-        centers[i] = image.projection_center()
     return rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12), centers
 
 

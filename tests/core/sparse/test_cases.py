@@ -1,13 +1,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pycolmap
 import pytest
 
+from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
 from core.sparse.mapper import registered_names
+from core.stage import StageTask
+from core.stages import coarse, refine
 from tests.core.sparse.scene import FOCAL, Scene, center_errors, make_scene, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)
@@ -110,3 +115,33 @@ def test_progress_counts_and_may_stop_the_case(graph: Path) -> None:
 
     with pytest.raises(KeyboardInterrupt):
         run_case(Case(graph, 0, 10, SETTINGS, 0), progress=stop)
+
+
+def case_task(graph: Path, out: Path, start: int, end: int, **more: Any) -> StageTask:
+    args = {"name": f"seg_{start}_{end}", "start": start, "end": end, "warm_from": more.pop("warm_from", "")}
+    inputs = {"graph": graph, **more}
+    out.mkdir()
+    settings = make_settings("default", {"mapper.search_tracks": 150})
+    return StageTask("coarse/x", args, settings, inputs, {}, Path(), None, out)
+
+
+def test_the_stages_write_a_model_and_a_row(graph: Path, tmp_path: Path) -> None:
+    row = coarse.run(case_task(graph, tmp_path / "a", 0, 12)).facts
+    assert (row["name"], row["kind"], row["start"], row["end"]) == ("seg_0_12", "coarse", 0, 12)
+    assert (row["status"], row["start_mode"]) == ("succeeded", "scratch")
+    assert (row["frames"], row["registered_images"]) == (12, 12)
+    assert pycolmap.Reconstruction(tmp_path / "a" / "model").num_points3D() == row["points3D"]
+    warm = case_task(graph, tmp_path / "b", 4, 16, warm_from="seg_0_12", **{"coarse/seg_0_12": tmp_path / "a"})
+    row = refine.run(warm).facts
+    assert (row["kind"], row["start_mode"], row["registered_images"]) == ("refine", "warm", 12)
+
+
+def test_a_failed_start_means_from_scratch(graph: Path, tmp_path: Path) -> None:
+    row = coarse.run(case_task(graph, tmp_path / "a", 0, 8, warm_from="seg_that_failed")).facts
+    assert (row["status"], row["start_mode"]) == ("succeeded", "scratch")
+
+
+def test_no_model_is_an_outcome_with_a_row_and_no_folder(graph: Path, tmp_path: Path) -> None:
+    row = coarse.run(case_task(graph, tmp_path / "a", 0, 2)).facts
+    assert (row["status"], row["reason"], row["models"], row["points3D"]) == ("no_model", "too_few_frames", 0, 0)
+    assert list((tmp_path / "a").iterdir()) == []

@@ -191,5 +191,8 @@ def stage_settings(settings: Settings, spec: StageSpec) -> dict[str, Any]:
         value: Any = settings
         for part in name.split("."):
             value = getattr(value, part)
+        if name == "overrides":
+            # Which of its own options the user set: those of other stages must not touch this one.
+            value = [option for option in value if option.split(".")[0] in spec.settings]
         chosen[name] = value.model_dump(mode="json") if hasattr(value, "model_dump") else value
     return chosen

@@ -58,10 +58,13 @@ def _detections(run: FinishedRun) -> list[dict[str, object]]:
 
 
 def refine(mesh: Mesh, n_vertices: int) -> Mesh:
-    """The same surface with at least `n_vertices` vertices: every triangle split in four, again and again."""
+    """The same surface with hardly more than `n_vertices` vertices: triangles split in four, again and again."""
     vertices, faces = mesh.vertices, mesh.faces
     while len(vertices) < n_vertices:
-        vertices, faces = _split(vertices, faces)
+        # A triangle has three edges, shared by two: one and a half new vertices each.
+        count = min(len(faces), -(-(n_vertices - len(vertices)) * 2 // 3))
+        vertices, split = _split(vertices, faces[:count])
+        faces = np.concatenate([split, faces[count:]])
     return Mesh(vertices, faces, extra={"support": np.ones(len(vertices), np.float32)})
 
 

@@ -61,11 +61,18 @@ def refine(mesh: Mesh, n_vertices: int) -> Mesh:
     """The same surface with hardly more than `n_vertices` vertices: triangles split in four, again and again."""
     vertices, faces = mesh.vertices, mesh.faces
     while len(vertices) < n_vertices:
-        # A triangle has three edges, shared by two: one and a half new vertices each.
-        count = min(len(faces), -(-(n_vertices - len(vertices)) * 2 // 3))
+        count = _faces_with_edges(faces, n_vertices - len(vertices))
         vertices, split = _split(vertices, faces[:count])
         faces = np.concatenate([split, faces[count:]])
     return Mesh(vertices, faces, extra={"support": np.ones(len(vertices), np.float32)})
+
+
+def _faces_with_edges(faces: NDArray[np.int32], n_edges: int) -> int:
+    """How many of the first faces have `n_edges` edges between them, at most all."""
+    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
+    _, first = np.unique(edges[:, 0] * (edges.max() + 1) + edges[:, 1], return_index=True)
+    in_order = np.sort(first)
+    return int(in_order[n_edges - 1] // 3 + 1) if n_edges <= len(in_order) else len(faces)
 
 
 def _split(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

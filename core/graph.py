@@ -46,7 +46,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("annotations", reads_annotations=True, weight=0.2),
         _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=1),
         _spec("features", "features", fan_out=True, weight=20),
-        _spec("focal", "camera", "matching.ratio", "verification", "mapper", "seed", fan_out=True, weight=3),
+        _spec("focal", "camera", "matching.ratio", "verification", "mapper.min_model_size", "mapper.init_min_num_inliers", "mapper.abs_pose_min_num_inliers", "mapper.abs_pose_min_inlier_ratio", "seed", fan_out=True, weight=3),
         _spec("camera", "camera", weight=0.1),
         _spec("matches", "matching", "verification", "features.method", "seed", fan_out=True, weight=12),
         _spec("graph", weight=1),

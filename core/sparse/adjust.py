@@ -21,12 +21,12 @@ from core.sparse.mapper import model_stats
 F64 = NDArray[np.float64]
 
 MAX_ROUNDS = 3
-"""Further ones trade the same observations to and fro and move no camera."""
+"""Further ones trade the same observations to and fro and hardly move a camera."""
 STABLE_CHANGE = 0.002
 """Rounds end when fewer observations than this share were filtered or completed (COLMAP's search: 0.0005)."""
 
 FUNCTION_TOLERANCE = 1e-5
-"""Measured on 60 frames of a rendered clip: 1e-7 moves no camera by a micrometre more and takes half as long again."""
+"""On 60 frames of a rendered clip 1e-7 takes half as long again; the median camera error changes by 0.1 micrometre."""
 MAX_ITERATIONS = 100
 
 HOPELESS_PX = 50.0

@@ -148,6 +148,9 @@ class MapperSettings(Group):
     bundle_adjustment: Literal["tuned", "colmap"] = option(
         "tuned", "bundle adjustment during the window search", source="ENGINES 3"
     )
+    refine_distortion: bool = option(
+        False, "free the distortion while a model grows; the last adjustment frees it in any case", source="measured"
+    )
     search_tracks: int = option(
         400, "keypoints per image that take part in the search, longest tracks first; 0 = all", source="measured", ge=0
     )

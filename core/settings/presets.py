@@ -58,6 +58,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "windows.start": "scratch",
         "mapper.initial_pair": "colmap",
         "mapper.bundle_adjustment": "colmap",
+        "mapper.refine_distortion": True,
         "mapper.search_tracks": 0,
         "model.confirm": False,
         "model.register_rest": False,

@@ -93,6 +93,9 @@ def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Loa
     ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
     options = mapper_options(settings.mapper, threads=1, seed=settings.seed, tuned=True)
     options.multiple_models = False
+    # One radial term is little enough to be free from the start.
+    options.ba_refine_extra_params = True
+    options.mapper.abs_pose_refine_extra_params = True
     models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
     model = best_model(models)
     if model is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -15,6 +16,7 @@ from core.dense.patchmatch.matcher import (
     Effort,
     Matcher,
     coarse_to_fine,
+    high_pass,
     ignore,
     packed,
     patch_mask,
@@ -28,6 +30,15 @@ from core.settings.groups import DenseSettings
 
 F32 = NDArray[np.float32]
 U8 = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class _Image:
+    """One image at all scales, finest first: as it is, as it is matched, and interleaved."""
+
+    guides: list[U8]
+    greys: list[U8]
+    packed: list[NDArray[np.uint32]]
 
 
 class PhotometricStereo:
@@ -49,9 +60,10 @@ class PhotometricStereo:
         self._masks = [patch_mask(level == 255) for level in inside]
         self._images = lru_cache(maxsize=24)(self._load)
 
-    def _load(self, name: str) -> tuple[list[U8], list[NDArray[np.uint32]]]:
-        levels = pyramid(self._scene.grey(name), len(self.pinholes))
-        return levels, [packed(level) for level in levels]
+    def _load(self, name: str) -> _Image:
+        guides = pyramid(self._scene.grey(name), len(self.pinholes))
+        greys = [high_pass(guide) for guide in guides]
+        return _Image(guides, greys, [packed(grey) for grey in greys])
 
     def matcher(
         self, view: DenseView, level: int, inverse_depths: list[F32] | None = None, consistency: float = 0.0
@@ -62,15 +74,25 @@ class PhotometricStereo:
             self.pinholes[level],
             poses[view.name],
             [poses[name] for name in view.sources],
-            [self._images(name)[1][level] for name in view.sources],
+            [self._images(name).packed[level] for name in view.sources],
             inverse_depths,
             consistency,
         )
-        grey = self._images(view.name)[0][level]
+        image = self._images(view.name)
         limits = (1.0 / view.depth_max, 1.0 / view.depth_min)
         key = view_key(self._seed, view.index, level)
         mask, pinhole = self._masks[level], self.pinholes[level]
-        return Matcher(grey, mask, pinhole, sources, limits, self._settings.best_views, key, self._threads)
+        return Matcher(
+            image.greys[level],
+            image.guides[level],
+            mask,
+            pinhole,
+            sources,
+            limits,
+            self._settings.best_views,
+            key,
+            self._threads,
+        )
 
     def efforts(self) -> list[Effort]:
         """Search effort per scale, finest first: most of the search happens where it is cheap."""

@@ -112,16 +112,17 @@ def pack(grey, out):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def reference_patch(grey, u, v, A, colour_weight, patch):  # type: ignore[no-untyped-def]
+def reference_patch(grey, guide, u, v, A, colour_weight, patch):  # type: ignore[no-untyped-def]
     """Fill `patch` for pixel (u, v) of the (h, w) uint8 reference; returns weighted mean and variance.
 
-    `colour_weight` is (256,) by grey difference to the centre.
+    `guide` is the (h, w) uint8 picture whose grey differences to the centre choose the bilateral weights from
+    the (256,) `colour_weight`.
     """
-    centre = np.int32(grey[v, u])
+    centre = np.int32(guide[v, u])
     total, first, second = f32(0), f32(0), f32(0)
     for i in range(TAPS):
         value = np.int32(grey[v + IY[i], u + IX[i]])
-        w = SPATIAL[i] * colour_weight[abs(value - centre)]
+        w = SPATIAL[i] * colour_weight[abs(np.int32(guide[v + IY[i], u + IX[i]]) - centre)]
         patch.weight[i] = w
         patch.weighted[i] = w * f32(value)
         total += w

@@ -26,7 +26,8 @@ Mask = NDArray[np.bool_]
 COLOUR_SIGMA = 30.0
 """Grey levels; the bilateral weight of a sample falls off with its difference to the centre."""
 
-SMOOTH_MARGIN = 0.02
+HIGH_PASS_SIGMA_PX, HIGH_PASS_GAIN = 2.0, 3.0
+SMOOTH_MARGIN = 0.05
 """A plane fitted to the neighbourhood may cost so much more than the pixel's own."""
 FIT_RADIUS = 3
 FIT_TOLERANCE = (0.02, 0.005)
@@ -50,6 +51,17 @@ def pyramid(grey: U8, levels: int) -> list[U8]:
         even = out[-1][: h // 2 * 2, : w // 2 * 2]
         out.append(np.asarray(cv2.resize(even, (w // 2, h // 2), interpolation=cv2.INTER_AREA), dtype=np.uint8))
     return out
+
+
+def high_pass(grey: U8) -> U8:
+    """What is matched instead of the grey values: their difference to a local mean, amplified.
+
+    A light at the camera's tip puts smooth highlights on bare metal that move with the camera; matched as they are they
+    give a consistent but wrong depth. What varies faster than a highlight is paint, scratches and grain.
+    """
+    values = grey.astype(np.float32)
+    detail = (values - cv2.GaussianBlur(values, (0, 0), HIGH_PASS_SIGMA_PX)) * HIGH_PASS_GAIN
+    return np.asarray(np.clip(np.rint(128.0 + detail), 0, 255), dtype=np.uint8)
 
 
 def packed(grey: U8) -> NDArray[np.uint32]:
@@ -99,6 +111,9 @@ class Matcher:
     """Sweeps over the planes of one reference image at one scale."""
 
     grey: U8
+    """(h, w) what is matched, see `high_pass`."""
+    guide: U8
+    """(h, w) the picture itself: its edges bound the patches."""
     mask: Mask
     pinhole: Pinhole
     sources: Sources
@@ -119,7 +134,7 @@ class Matcher:
         weight = _colour_weight()
 
         def work(y0: int, y1: int) -> None:
-            score_rows(planes, pairs, self.grey, self.mask, self.sources, self._scratch(), weight, y0, y1)
+            score_rows(planes, pairs, self.grey, self.guide, self.mask, self.sources, self._scratch(), weight, y0, y1)
 
         self._over_rows(work)
         return pairs
@@ -133,7 +148,7 @@ class Matcher:
 
         def work(colour: int, key: Any, y0: int, y1: int) -> None:
             sweep_rows(
-                planes, pairs, self.grey, self.mask, self.sources, self._scratch(), weight,
+                planes, pairs, self.grey, self.guide, self.mask, self.sources, self._scratch(), weight,
                 lens, limits, colour, key, size, draws, y0, y1,
             )  # fmt: skip
 

@@ -29,7 +29,7 @@ EARLY_MARGIN = f32(0.02)
 
 
 @kernel
-def score_rows(planes, pairs, grey, mask, sources, patch, colour_weight, y0, y1):  # type: ignore[no-untyped-def]
+def score_rows(planes, pairs, grey, guide, mask, sources, patch, colour_weight, y0, y1):  # type: ignore[no-untyped-def]
     """Cost of every present plane of rows [y0, y1) into channel 3, its two best sources into `pairs`."""
     H, W = grey.shape
     S = sources.A.shape[0]
@@ -37,7 +37,7 @@ def score_rows(planes, pairs, grey, mask, sources, patch, colour_weight, y0, y1)
         for u in range(RADIUS, W - RADIUS):
             if not mask[v, u] or planes[v, u, 0] <= f32(0):
                 continue
-            mean, variance = reference_patch(grey, u, v, sources.A, colour_weight, patch)
+            mean, variance = reference_patch(grey, guide, u, v, sources.A, colour_weight, patch)
             planes[v, u, 3] = plane_cost(
                 planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], f32(u), f32(v),
                 sources, W, H, patch, mean, variance, 0, min(1, S - 1), f32(1e9),
@@ -54,14 +54,18 @@ def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sweep_rows(planes, pairs, grey, mask, sources, patch, colour_weight, K, limits, colour, key, step, draws, y0, y1):  # type: ignore[no-untyped-def]
+def sweep_rows(
+    planes, pairs, grey, guide, mask, sources, patch, colour_weight, K, limits, colour, key, step, draws, y0, y1
+):  # type: ignore[no-untyped-def]
     """Update the pixels of one colour in rows [y0, y1), reading only the other colour beside itself.
 
     Args:
         planes: (h, w, 4) float32: w, gu, gv, cost; updated in place.
         pairs: (h, w, 2) uint8: the two sources that match best; updated in place.
-        grey: (h, w) uint8 reference; mask: (h, w) bool, where a patch lies inside the image.
-        sources: `kernels.Sources`; patch: `kernels.Patch`, whose `costs` says over how many sources the cost is a mean.
+        grey, guide: (h, w) uint8 reference and what guides its bilateral weights.
+        mask: (h, w) bool, where a patch lies inside the image.
+        sources: `kernels.Sources`.
+        patch: `kernels.Patch`, whose `costs` says over how many sources the cost is a mean.
         K: (3,) float32 f, cx, cy with whole-number pixel centres; limits: (2,) smallest and largest inverse depth.
         colour: 0 or 1; key: random key of this view, scale and sweep.
         step: size of refinement, 1 = the whole range; draws: refinements tried per pixel.
@@ -75,7 +79,7 @@ def sweep_rows(planes, pairs, grey, mask, sources, patch, colour_weight, K, limi
             if not mask[v, u]:
                 continue
             fu, fv = f32(u), f32(v)
-            mean, variance = reference_patch(grey, u, v, sources.A, colour_weight, patch)
+            mean, variance = reference_patch(grey, guide, u, v, sources.A, colour_weight, patch)
             w0, gu0, gv0, c0 = planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], planes[v, u, 3]
             first, second = np.int64(pairs[v, u, 0]), np.int64(pairs[v, u, 1])
             counter = np.uint64(v * W + u) * np.uint64(DRAWS)

@@ -39,6 +39,11 @@ def _spec(name: str, *settings: str, version: int = 1, **more: Any) -> StageSpec
     return StageSpec(name, version, f"core.stages.{name}:run", settings, **more)
 
 
+_FOCAL_MAPPER = tuple(
+    f"mapper.{name}"
+    for name in ("min_model_size", "init_min_num_inliers", "abs_pose_min_num_inliers", "abs_pose_min_inlier_ratio")
+)
+
 STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
@@ -46,19 +51,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("annotations", reads_annotations=True, weight=0.2),
         _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=1),
         _spec("features", "features", fan_out=True, weight=20),
-        _spec(
-            "focal",
-            "camera",
-            "matching.ratio",
-            "verification",
-            "mapper.min_model_size",
-            "mapper.init_min_num_inliers",
-            "mapper.abs_pose_min_num_inliers",
-            "mapper.abs_pose_min_inlier_ratio",
-            "seed",
-            fan_out=True,
-            weight=3,
-        ),
+        _spec("focal", "camera", "matching.ratio", "verification", *_FOCAL_MAPPER, "seed", fan_out=True, weight=6),
         _spec("camera", "camera", weight=0.1),
         _spec("matches", "matching", "verification", "features.method", "seed", fan_out=True, weight=12),
         _spec("graph", weight=1),

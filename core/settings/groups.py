@@ -261,6 +261,11 @@ class GallerySettings(Group):
 class ComputeSettings(Group):
     """Work, not method: none of these is meant to change what is found."""
 
-    threads: int = option(0, "threads of stages that are not fanned out; 0 = all cores", source="machine", ge=0)
+    threads: int = option(
+        0,
+        "threads of stages that are not fanned out; 0 = all cores, but one in the last adjustment, which then repeats to the last bit",
+        source="machine",
+        ge=0,
+    )
     chunk_frames: int = option(48, "frames per task of features and matches", unit="frames", source="measured", ge=1)
     chunk_views: int = option(8, "depth maps per task", unit="views", source="measured", ge=1)

@@ -102,6 +102,7 @@ def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Loa
         return nothing
     adjustment = pycolmap.BundleAdjustmentOptions()
     adjustment.print_summary = False
+    adjustment.ceres.solver_options.num_threads = 1  # more would not repeat to the last bit
     pycolmap.bundle_adjustment(model, adjustment)
     stats, lens = model_stats(model), model.cameras[camera.camera_id]
     return SpanFocal(

@@ -50,7 +50,7 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
         mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
         loss_scale_px=task.settings.model.loss_scale_px,
-        threads=task.threads,
+        threads=task.settings.compute.threads or 1,  # 0 asks for a result that repeats to the last bit
         progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
     )
 

@@ -263,7 +263,7 @@ class ComputeSettings(Group):
 
     threads: int = option(
         0,
-        "threads of stages that are not fanned out; 0 = all cores, but one in the last adjustment, which then repeats to the last bit",
+        "threads of stages that are not fanned out; 0 = all cores, yet one where only one repeats exactly",
         source="machine",
         ge=0,
     )

@@ -11,6 +11,7 @@ from typing import Any
 
 from bench.speed.finished import FinishedRun
 from bench.speed.timing import Row, Table
+from core.errors import StageFailed
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.windows import Window, coarse_windows
@@ -84,6 +85,8 @@ def _timed(
             return Mapped(cap_s, 0, 0, finished=False)
         images, points = receiver.recv()
         return Mapped(time.perf_counter() - began, images, points, finished=True)
+    except EOFError:
+        raise StageFailed(f"the process that mapped {window.name} died", where=window.name) from None
     finally:
         child.kill()
         child.join()
@@ -100,6 +103,7 @@ def _map(
 ) -> None:
     import pycolmap
 
+    pycolmap.logging.minloglevel = pycolmap.logging.ERROR.value
     from core.sparse.cases import Case, run_case
 
     sender.send("ready")

@@ -130,38 +130,41 @@ def angle_weight(angle_deg: F64) -> F64:
 def select_sources(views: SparseViews, row: int, preferred: frozenset[int], count: int) -> list[int]:
     """Rows of the best source images of one image, best first; at most `count`, perhaps none.
 
-    The score of a candidate is the sum over shared points of the worth of their angle, times the worth of their
-    relative resolution. Sources are taken greedily; a candidate in the direction of one already taken
-    counts less, because two neighbouring frames see the same occlusions and the same highlights.
+    The worth of a candidate for a point is the worth of their angle times that of their relative resolution.
+    Sources are taken greedily by the sum over shared points, where a point counts less the better the sources taken so
+    far already serve it. So the sources together cover the whole image: an image's border is seen by other
+    frames than its centre.
     """
-    scores = np.zeros(len(views.names))
-    for other in range(len(views.names)):
-        if other != row:
-            scores[other] = _source_score(views, row, other) * (SELECTED_BONUS if other in preferred else 1.0)
-    focus = views.points[views.visible[row]].mean(axis=0)
-    rays = views.centers - focus
-    rays /= np.maximum(np.linalg.norm(rays, axis=1), 1e-12)[:, None]
+    served = np.zeros(len(views.visible[row]))
+    worth = {
+        other: values * (SELECTED_BONUS if other in preferred else 1.0)
+        for other in range(len(views.names))
+        if other != row and (values := _source_worth(views, row, other)).any()
+    }
     taken: list[int] = []
-    while len(taken) < count and scores.max() > 0:
-        best = int(np.argmax(scores))
+    while len(taken) < count and worth:
+        gain = {other: float((values / (1.0 + served) ** 2).sum()) for other, values in worth.items()}
+        best = max(gain, key=lambda other: (gain[other], -other))
         taken.append(best)
-        angle = np.degrees(np.arccos(np.clip(rays @ rays[best], -1.0, 1.0)))
-        scores = scores * np.clip(0.25 + 0.75 * angle / (MIN_ANGLE_DEG * 1.5), 0.25, 1.0)
-        scores[best] = 0.0
+        served += worth.pop(best)
     return taken
 
 
-def _source_score(views: SparseViews, row: int, other: int) -> float:
-    shared = np.intersect1d(views.visible[row], views.visible[other], assume_unique=True)
-    if len(shared) < 3:
-        return 0.0
-    points = views.points[shared]
+def _source_worth(views: SparseViews, row: int, other: int) -> F64:
+    """(n,) worth of `other` for each point that `row` observes, 0 where it does not observe it."""
+    seen = views.visible[row]
+    worth = np.zeros(len(seen))
+    shared = np.isin(seen, views.visible[other], assume_unique=True)
+    if int(shared.sum()) < 3:
+        return worth
+    points = views.points[seen[shared]]
     a, b = views.centers[row] - points, views.centers[other] - points
     da, db = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
     cosine = (a * b).sum(axis=1) / np.maximum(da * db, 1e-24)
     angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
     resolution = np.minimum(da, db) / np.maximum(np.maximum(da, db), 1e-12)
-    return float((angle_weight(angle) * resolution).sum())
+    worth[shared] = angle_weight(angle) * resolution
+    return worth
 
 
 def plan_views(views: SparseViews, settings: DenseSettings) -> list[DenseView]:

@@ -54,9 +54,9 @@ def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sweep_rows(
+def sweep_rows(  # type: ignore[no-untyped-def]
     planes, pairs, grey, guide, mask, sources, patch, colour_weight, K, limits, colour, key, step, draws, y0, y1
-):  # type: ignore[no-untyped-def]
+):
     """Update the pixels of one colour in rows [y0, y1), reading only the other colour beside itself.
 
     Args:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 import numpy.typing as npt
 import pycolmap
@@ -75,77 +74,90 @@ def _world_rays(
     return rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12), centers
 
 
-def _solve_python(
-    offsets: npt.NDArray[np.int64],
-    row: npt.NDArray[np.int64],
-    rays: npt.NDArray[np.float64],
-    centers: npt.NDArray[np.float64],
-    max_error: float,
-    max_cosine: float,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
-    """Points (n, 3), NaN where there is none, and which observations belong to them.
+Array = npt.NDArray[Any]
 
-    Least squares of the distances to the rays, weighted by the inverse distance to the centre, so that angles
-    count; the observation that fits worst goes while its angle exceeds `max_error`, down to `MIN_LENGTH`.
+
+def _solve(
+    offsets: Array, row: Array, rays: Array, centers: Array, max_error: float, max_cosine: float
+) -> tuple[Array, Array]:
+    """Points (n, 3) of all tracks, NaN where there is none, and which observations (total,) belong to them.
+
+    The observation of a track that fits worst goes while its angle exceeds `max_error` (rad); all tracks that lost
+    one are solved again together.
     """
     n = len(offsets) - 1
+    track = np.repeat(np.arange(n), np.diff(offsets))
     points = np.full((n, 3), np.nan)
     kept = row >= 0
-    for t in range(n):
-        first, last = offsets[t], offsets[t + 1]
-        count = 0
-        for o in range(first, last):
-            count += kept[o]
-        weight = np.ones(last - first)
-        solved = False
-        point: npt.NDArray[Any] = np.zeros(3)
-        while count >= MIN_LENGTH:
-            for _ in range(3):
-                normal = np.zeros((3, 3))
-                side = np.zeros(3)
-                for o in range(first, last):
-                    if kept[o]:
-                        d, c, w = rays[o], centers[row[o]], weight[o - first]
-                        for i in range(3):
-                            for j in range(3):
-                                m = w * ((1.0 if i == j else 0.0) - d[i] * d[j])
-                                normal[i, j] += m
-                                side[i] += m * c[j]
-                if abs(np.linalg.det(normal)) < 1e-12:
-                    break
-                point = np.linalg.solve(normal, side)
-                for o in range(first, last):
-                    v = point - centers[row[o]]
-                    weight[o - first] = 1.0 / max(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], 1e-12)
-            worst, worst_error = -1, max_error
-            for o in range(first, last):
-                if kept[o]:
-                    v = point - centers[row[o]]
-                    length = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-                    d = rays[o]
-                    error = np.sqrt(
-                        (v[0] / length - d[0]) ** 2 + (v[1] / length - d[1]) ** 2 + (v[2] / length - d[2]) ** 2
-                    )
-                    if not error <= worst_error:
-                        worst, worst_error = o, error
-            if worst < 0:
-                solved = True
-                break
-            kept[worst] = False
-            count -= 1
-        smallest = 1.0
-        if solved:
-            for a in range(first, last):
-                if kept[a]:
-                    for b in range(a + 1, last):
-                        if kept[b]:
-                            u, v = point - centers[row[a]], point - centers[row[b]]
-                            smallest = min(smallest, np.dot(u, v) / np.sqrt(np.dot(u, u) * np.dot(v, v)))
-        if smallest < max_cosine:
-            points[t] = point
-        else:
-            kept[first:last] = False
-    return points, kept
+    pending = np.ones(n, dtype=bool)
+    while pending.any():
+        some = np.flatnonzero(kept & pending[track])
+        pending[:] = False
+        names, starts = np.unique(track[some], return_index=True)
+        points[names] = _nearest(starts, rays[some], centers[row[some]])
+        error = np.linalg.norm(_toward(points[track[some]], centers[row[some]]) - rays[some], axis=1)
+        largest = np.maximum.reduceat(error, starts) if len(some) else np.zeros(0)
+        bad = names[largest > max_error]
+        of_bad = np.isin(track[some], bad) & (error >= np.repeat(largest, np.diff([*starts, len(some)])))
+        kept[some[of_bad]] = False
+        pending[bad] = np.bincount(track[kept], minlength=n)[bad] >= MIN_LENGTH
+        points[bad[~pending[bad]]] = np.nan
+    count = np.bincount(track[kept], minlength=n)
+    points[(count < MIN_LENGTH) | (_cosine_of_opening(track, row, kept, points, centers) >= max_cosine)] = np.nan
+    return points, kept & np.isfinite(points[track, 0])
 
 
-_solve: Any = numba.njit(cache=True)(_solve_python)
+def _nearest(starts: Array, rays: Array, centers: Array) -> Array:
+    """Points (n, 3) with the least squared distance to their rays, in angle; NaN where the rays are parallel.
+
+    Rows of `rays` and `centers` from one of `starts` to the next belong together. Distances are weighted by the
+    inverse distance to the centre, so that angles count: three rounds.
+    """
+    if len(starts) == 0:
+        return np.zeros((0, 3))
+    lengths = np.diff([*starts, len(rays)])
+    across = np.eye(3) - rays[:, :, None] * rays[:, None, :]
+    weight = np.ones(len(rays))
+    for _ in range(3):
+        weighted = weight[:, None, None] * across
+        normal = np.add.reduceat(weighted, starts)
+        side = np.add.reduceat(np.einsum("nij,nj->ni", weighted, centers), starts)
+        scale = np.add.reduceat(weight, starts)
+        solvable = np.linalg.det(normal) > 1e-12 * scale**3
+        normal[~solvable] = np.eye(3)
+        points = np.linalg.solve(normal, side[:, :, None])[:, :, 0]
+        points[~solvable] = np.nan
+        distance = np.linalg.norm(np.repeat(points, lengths, axis=0) - centers, axis=1)
+        weight = 1.0 / np.maximum(np.where(np.isfinite(distance), distance, 1.0) ** 2, 1e-12)
+    found: Array = points
+    return found
+
+
+def _toward(points: Array, centers: Array) -> Array:
+    """Unit vectors (n, 3) from the centres to the points."""
+    lines = points - centers
+    unit: Array = lines / np.maximum(np.linalg.norm(lines, axis=1, keepdims=True), 1e-12)
+    return unit
+
+
+def _cosine_of_opening(track: Array, row: Array, kept: Array, points: Array, centers: Array) -> Array:
+    """Cosine of the angle (n,) under which the kept views of each point lie apart; 1 for points without views.
+
+    Measured from the view that is farthest from the first one, to which the widest pair of a path nearly belongs.
+    """
+    cosine = np.ones(len(points))
+    some = np.flatnonzero(kept & np.isfinite(points[track, 0]))
+    if len(some) == 0:
+        return cosine
+    names, starts = np.unique(track[some], return_index=True)
+    lengths = np.diff([*starts, len(some)])
+    toward = _toward(points[track[some]], centers[row[some]])
+    reference = starts
+    for _ in range(2):
+        apart = (toward * np.repeat(toward[reference], lengths, axis=0)).sum(axis=1)
+        smallest = np.minimum.reduceat(apart, starts)
+        at_smallest = np.flatnonzero(apart == np.repeat(smallest, lengths))
+        owner = track[some][at_smallest]
+        reference = at_smallest[np.unique(owner, return_index=True)[1]]
+    cosine[names] = smallest
+    return cosine

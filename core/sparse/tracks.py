@@ -197,5 +197,13 @@ def _join_python(edges: npt.NDArray[np.int64], frame: npt.NDArray[np.int64], n_f
     return parent
 
 
-_take: Any = numba.njit(cache=True)(_take_python)
-_join: Any = numba.njit(cache=True)(_join_python)
+def _compiled(function: Any) -> Any:
+    """Machine code, cached on disk where numba can write; compiled in each process where it cannot."""
+    try:
+        return numba.njit(cache=True)(function)
+    except RuntimeError:
+        return numba.njit(function)
+
+
+_take: Any = _compiled(_take_python)
+_join: Any = _compiled(_join_python)

@@ -29,6 +29,9 @@ FUNCTION_TOLERANCE = 1e-5
 """On 60 frames of a rendered clip 1e-7 takes half as long again; the median camera error changes by 0.1 micrometre."""
 MAX_ITERATIONS = 100
 
+ROBUST_ITERATIONS = 25
+"""The robust loss follows squares that converged: what it moves it moves early, and it converges slowly."""
+
 HOPELESS_PX = 50.0
 """Observations farther off than this are dropped before the first adjustment."""
 
@@ -152,7 +155,7 @@ def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int
         options.ceres.loss_function_type = pycolmap.LossFunctionType.CAUCHY
         options.ceres.loss_function_scale = loss_scale_px
     solver = options.ceres.solver_options
-    solver.max_num_iterations = MAX_ITERATIONS
+    solver.max_num_iterations = ROBUST_ITERATIONS if loss_scale_px > 0 else MAX_ITERATIONS
     solver.function_tolerance = FUNCTION_TOLERANCE
     solver.num_threads = threads
     return options
@@ -172,6 +175,8 @@ def _refine(
     hopeless = options.get_mapper()
     hopeless.filter_max_reproj_error = HOPELESS_PX
     mapper.filter_points(hopeless)
+    # Poses and lens follow from the tracks that cover every image; the other points follow from them.
+    mapping.ba_global_ignore_redundant_points3D = True
     rounds, stable = 0, False
     while (rounds < len(schedule) or (rounds < MAX_ROUNDS and not stable)) and model.num_points3D():
         progress(rounds / MAX_ROUNDS)

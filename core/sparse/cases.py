@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from core.settings.groups import MapperSettings
-from core.sparse.densify import densify, transfer_poses, triangulate
+from core.sparse.densify import densify, free_distortion, transfer_poses, triangulate
 from core.sparse.initial_pair import rank_initial_pairs
 from core.sparse.mapper import (
     ModelStats,
@@ -130,6 +130,9 @@ class _Window:
         return densify(self._full, model, self._tracks, self._frames, self._options)
 
     def _whole(self, model: Any) -> Any:
+        """A model of the search with everything that was held or left out."""
+        if not self._settings.refine_distortion:
+            model = free_distortion(self._search, model, self._options)
         if self._search is self._full:
             return model
         return densify(self._full, model, self._tracks, self._frames, self._options)

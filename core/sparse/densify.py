@@ -10,6 +10,9 @@ from core.sparse.tracks import Tracks
 from core.sparse.triangulation import add_track_points
 from core.sparse.view_graph import Frames
 
+KEPT_SHARE = 0.98
+"""Of its points, a model must keep when its distortion is freed; one that loses more has folded over."""
+
 
 def transfer_poses(cache: Any, model: Any) -> Any:
     """New model over the images of `cache` with the camera and poses of `model`, without points.
@@ -49,6 +52,22 @@ def densify(cache: Any, model: Any, tracks: Tracks, frames: Frames, options: Any
     mapper.begin_reconstruction(full)
     _complete(mapper, options)
     return full
+
+
+def free_distortion(cache: Any, model: Any, options: Any) -> Any:
+    """`model` adjusted once more with the distortion free, or itself when that loses points.
+
+    For models that grew with the distortion held: on the development clip without a first estimate of it, 40 images
+    end 0.03 mm from the truth instead of 0.23 mm.
+    """
+    freed = pycolmap.Reconstruction(model)
+    mapper = pycolmap.IncrementalMapper(cache)
+    mapper.begin_reconstruction(freed)
+    adjustment = options.get_global_bundle_adjustment()
+    adjustment.refine_extra_params = True
+    mapper.adjust_global_bundle(options.get_mapper(), adjustment)
+    _complete(mapper, options)
+    return freed if freed.num_points3D() >= KEPT_SHARE * model.num_points3D() else model
 
 
 def _complete(mapper: Any, options: Any) -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -145,3 +146,15 @@ def test_no_model_is_an_outcome_with_a_row_and_no_folder(graph: Path, tmp_path: 
     row = coarse.run(case_task(graph, tmp_path / "a", 0, 2)).facts
     assert (row["status"], row["reason"], row["models"], row["points3D"]) == ("no_model", "too_few_frames", 0, 0)
     assert list((tmp_path / "a").iterdir()) == []
+
+
+def test_a_wrong_distortion_is_freed_when_the_model_stands(graph: Path, scene: Scene, tmp_path: Path) -> None:
+    wrong = shutil.copytree(graph, tmp_path / "graph")
+    with pycolmap.Database.open(wrong / "database.db") as database:
+        camera = database.read_camera(1)
+        camera.params = np.array([*camera.params[:4], 0.06, 0.0, 0.0, 0.0])
+        database.update_camera(camera)
+    result = run_case(Case(wrong, 0, 16, SETTINGS, 0))
+    assert not SETTINGS.refine_distortion
+    assert result.stats.mean_reprojection_error_px < 0.6
+    assert center_errors(result.model, scene).max() < 0.02

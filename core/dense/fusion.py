@@ -37,6 +37,7 @@ def fuse(scene: DenseScene, maps: Mapping[str, Path], workspace: Path, out: Path
     options.max_normal_error = settings.max_normal_error_deg
     options.num_threads = 1
     pycolmap.stereo_fusion(str(out), str(workspace), input_type="geometric", options=options, output_type="PLY")
+    out.with_name(out.name + ".vis").unlink(missing_ok=True)
     cloud = read_mesh(out)
     if not len(cloud.vertices):
         raise StageFailed("the depth maps agree nowhere: the fused cloud is empty", code="empty_cloud", where="fuse")

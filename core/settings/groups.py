@@ -190,7 +190,7 @@ class DenseSettings(Group):
         2.0, "radial stretch of the lens's border by undistortion, at most (2 = 45 degrees)", source="measured", gt=1
     )
     levels: int = option(3, "image scales, coarse to fine", source="ENGINES 4", ge=1, le=5)
-    iterations: int = option(3, "red-black sweeps per scale", source="ENGINES 4", ge=1, le=10)
+    iterations: int = option(2, "red-black sweeps per scale", source="measured: more find false minima", ge=1, le=10)
     best_views: int = option(2, "cost is the mean over this many best source views", source="ENGINES 4", ge=1, le=10)
     geometric_passes: int = option(1, "passes with geometric consistency", source="ENGINES 4", ge=0, le=3)
     min_ncc: float = option(0.3, "estimates correlating less are dropped", source="measured", ge=-1, le=1)

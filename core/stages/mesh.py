@@ -14,7 +14,7 @@ def run(task: StageTask) -> StageResult:
     cloud_path = task.input("fuse") / "fused.ply"
     raw_path = task.out / "raw.ply"
     task.report(0, 3, "Poisson surface")
-    mesh = poisson_mesh(cloud_path, raw_path, task.settings.mesh, max(1, task.threads))
+    mesh = poisson_mesh(cloud_path, raw_path, task.settings.mesh)
     raw_path.unlink()
     task.report(1, 3, "support")
     cloud = read_mesh(cloud_path)

@@ -29,13 +29,16 @@ class Surface:
     """Share of the full surface's vertices that the cloud supports."""
 
 
-def poisson_mesh(cloud: Path, out: Path, settings: MeshSettings, threads: int = 1) -> Mesh:
-    """Poisson surface of a cloud with normals and colours; `StageFailed` when it comes out empty."""
+def poisson_mesh(cloud: Path, out: Path, settings: MeshSettings) -> Mesh:
+    """Poisson surface of a cloud with normals and colours; `StageFailed` when it comes out empty.
+
+    One thread: with more the vertices differ from run to run.
+    """
     options = pycolmap.PoissonMeshingOptions()
     options.depth = settings.poisson_depth
     options.trim = settings.poisson_trim
     options.color = 1.0
-    options.num_threads = threads
+    options.num_threads = 1
     pycolmap.poisson_meshing(str(cloud), str(out), options)
     mesh = read_mesh(out) if out.exists() else None
     if mesh is None or not len(mesh.faces):

@@ -165,7 +165,7 @@ class ModelSettings(Group):
     register_rest: bool = option(True, "go on mapping over all remaining frames", source="METHOD")
     final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="ENGINES 7")
     loss_scale_px: float = option(
-        1.0,
+        0.0,
         "last adjustment: residuals above this count less (Cauchy); 0 counts squares",
         unit="px",
         source="measured: camera error 0.036 to 0.025 mm",

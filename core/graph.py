@@ -59,7 +59,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("reduce_coarse", weight=0.1),
         _spec("refine", "mapper", "seed", fan_out=True, weight=15),
         _spec("reduce_refine", weight=0.1),
-        _spec("confirm", "mapper", "model", "seed", weight=8),
+        _spec("confirm", "mapper", "model.confirm", "seed", weight=8),
         _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", weight=8),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
         _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=12),

@@ -77,6 +77,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "frames.count": 120,
         # 120 frames in all keep a draft quick; detections go to the nearest of them in time.
         "frames.include_annotated": False,
+        "camera.focal_spans": 1,
         "features.max_keypoints": 2048,
         "features.scale": 0.5,
         "matching.method": "mutual_nearest",

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from core.dense.maps import DenseScene, DepthMap, read_map
 from core.dense.patchmatch.consistency import count_consistent
 from core.dense.patchmatch.kernels import Sources
-from core.dense.patchmatch.matcher import fit_planes, ignore
+from core.dense.patchmatch.matcher import Matcher, fit_planes, ignore
 from core.dense.patchmatch.planes import from_normals
+from core.dense.patchmatch.transfer import planes_from_source
 from core.dense.stereo import PhotometricStereo, planes_to_map
 from core.dense.views import DenseView
 from core.settings.groups import DenseSettings
@@ -45,35 +46,48 @@ class GeometricFilter:
         self._scene, self._settings, self._maps = scene, settings, maps
         # Only the finest scale takes part here.
         self._stereo = PhotometricStereo(scene, settings.model_copy(update={"levels": 1}), seed, threads)
-        self._depth = lru_cache(maxsize=16)(self._load)
+        self._planes = lru_cache(maxsize=16)(self._load)
 
     def _load(self, name: str) -> F32:
-        """(h, w) inverse depth of a source; zeros for a source without a depth map."""
+        """(h, w, 4) planes of a view; zeros for a view without a depth map."""
         pinhole = self._scene.pinhole
         if name not in self._maps:
-            return np.zeros((pinhole.height, pinhole.width), np.float32)
-        depth = read_map(self._maps[name]).depth
-        return np.where(depth > 0, 1.0 / np.where(depth > 0, depth, 1.0), 0.0).astype(np.float32)
+            return np.zeros((pinhole.height, pinhole.width, 4), np.float32)
+        found = read_map(self._maps[name])
+        return from_normals(found.depth, found.normal, pinhole.index_matrix())
 
     def depth_map(self, view: DenseView, check: Callable[[float], None] = ignore) -> DepthMap:
         """The corrected and filtered depth map of one view."""
         settings, pinhole = self._settings, self._scene.pinhole
-        found = read_map(self._maps[view.name])
-        planes = from_normals(found.depth, found.normal, pinhole.index_matrix())
-        inverse = [self._depth(name) for name in view.sources]
+        planes = self._planes(view.name).copy()
+        inverse = [np.ascontiguousarray(self._planes(name)[..., 0]) for name in view.sources]
         matcher = self._stereo.matcher(view, 0, inverse, CONSISTENCY_WEIGHT)
-        planes[..., 3] = np.float32(np.inf)
-        pairs = matcher.score(planes)
-        for number in range(settings.geometric_passes):
-            matcher.sweep(planes, pairs, 100 + number, STEP * 0.5**number, DRAWS)
-            check((number + 1) / (settings.geometric_passes + 1))
-        matcher.smooth(planes, pairs)
+        if settings.geometric_passes:
+            self._correct(view, matcher, planes, check)
         self._stereo.matcher(view, 0).score(planes)
         agreeing = self._agreeing(view, planes, matcher.sources)
         cost = planes[..., 3]
         keep = matcher.mask & (planes[..., 0] > 0) & (cost <= 1.0 - settings.min_ncc)
         keep &= agreeing >= min(settings.min_consistent, len(view.sources))
         return planes_to_map(fit_planes(planes, keep), pinhole, keep)
+
+    def _correct(self, view: DenseView, matcher: Matcher, planes: F32, check: Callable[[float], None]) -> None:
+        """Try the planes of the source views, then sweep with the consistency cost; in place."""
+        passes = self._settings.geometric_passes
+        planes[..., 3] = np.float32(np.inf)
+        pairs = matcher.score(planes)
+        poses, pinhole = self._scene.poses, self._scene.pinhole
+        for name in view.sources:
+            if name in self._maps:
+                matcher.offer(
+                    planes,
+                    pairs,
+                    planes_from_source(self._planes(name), pinhole, poses[view.name], poses[name], matcher.limits),
+                )
+        for number in range(passes):
+            matcher.sweep(planes, pairs, 100 + number, STEP * 0.5**number, DRAWS)
+            check((number + 1) / (passes + 1))
+        matcher.smooth(planes, pairs)
 
     def _agreeing(self, view: DenseView, planes: F32, sources: Sources) -> NDArray[np.uint8]:
         """(h, w) number of sources that agree."""

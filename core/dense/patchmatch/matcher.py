@@ -155,13 +155,17 @@ class Matcher:
         for colour in (0, 1):
             self._over_rows(partial(work, colour, np.uint64(_mix(self.key, 2 * number + colour))))
 
+    def offer(self, planes: F32, pairs: NDArray[np.uint8], others: F32, margin: float = 0.0) -> None:
+        """Take each of the (h, w, 4) `others` that costs less than the pixel's plane plus `margin`; in place."""
+        others[..., 3] = np.float32(np.inf)
+        other_pairs = self.score(others)
+        better = self.mask & (others[..., 3] < planes[..., 3] + np.float32(margin))
+        planes[better] = others[better]
+        pairs[better] = other_pairs[better]
+
     def smooth(self, planes: F32, pairs: NDArray[np.uint8]) -> None:
         """Take the local plane fit of every pixel where it matches about as well; in place."""
-        fitted = fit_planes(planes, self.mask, self.threads)
-        fitted_pairs = self.score(fitted)
-        better = self.mask & (fitted[..., 3] < planes[..., 3] + SMOOTH_MARGIN)
-        planes[better] = fitted[better]
-        pairs[better] = fitted_pairs[better]
+        self.offer(planes, pairs, fit_planes(planes, self.mask, self.threads), SMOOTH_MARGIN)
 
     def _scratch(self) -> Patch:
         return scratch(len(self.sources.A), min(self.best_views, len(self.sources.A)))

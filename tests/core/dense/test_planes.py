@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.dense.cameras import Pinhole
+from core.dense.cameras import Pinhole, Pose
 from core.dense.patchmatch.jit import kernel
 from core.dense.patchmatch.planes import from_normals, to_normals, uniform, upsample
+from core.dense.patchmatch.transfer import planes_from_source
 
 
 def _plane_image(pinhole: Pinhole, normal: np.ndarray, distance: float) -> np.ndarray:
@@ -69,3 +70,21 @@ def test_random_numbers_are_uniform_and_depend_on_the_key_only():
     assert first.max() < 1
     counts, _ = np.histogram(first, bins=10, range=(0, 1))
     assert counts.min() > 1800
+
+
+def test_a_plane_seen_from_another_camera_is_the_same_plane():
+    pinhole = Pinhole(60.0, 21.0, 15.0, 40, 32)
+    a = np.radians(9)
+    turn = np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])
+    reference, source = Pose(np.eye(3), np.array([0.1, 0, 0])), Pose(turn, np.array([-0.4, 0.1, 0.2]))
+    normal, distance = np.array([0.2, 0.1, -1.0]), -3.0
+    # n . X_world = d; X_camera = R X_world + t.
+    planes = [
+        _plane_image(pinhole, pose.R @ normal, distance + (pose.R @ normal) @ pose.t) for pose in (reference, source)
+    ]
+    carried = planes_from_source(planes[1], pinhole, reference, source, (0.01, 10.0))
+    hit = carried[..., 0] > 0
+    assert hit.mean() > 0.5
+    np.testing.assert_allclose(carried[hit][:, :3], planes[0][hit][:, :3], atol=2e-5)
+    none = planes_from_source(planes[1], pinhole, reference, source, (5.0, 10.0))
+    assert not none.any()

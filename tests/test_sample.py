@@ -77,11 +77,24 @@ class Ended:
         return {event["stage"] for event in ended if not event["reused"] and event["state"] != "skipped"}
 
 
+def _heed_interrupts() -> None:
+    """A shell lets its background jobs ignore SIGINT, and children inherit that: here it must arrive."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def start(out: Path, *more: str, video: Path = VIDEO, annotations: Path | None = ANNOTATIONS) -> subprocess.Popen[str]:
     words = [str(video), *([str(annotations)] if annotations else []), "--out", str(out), "--preset", "draft", "--json"]
     command = [sys.executable, "-m", "cli.main", "run", *words, *more]
     pipe = subprocess.PIPE
-    return subprocess.Popen(command, cwd=ROOT, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
+    return subprocess.Popen(
+        command,
+        cwd=ROOT,
+        stdout=pipe,
+        stderr=pipe,
+        text=True,
+        start_new_session=True,
+        preexec_fn=_heed_interrupts,
+    )
 
 
 def run(out: Path, *more: str, **inputs: Any) -> Ended:

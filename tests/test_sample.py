@@ -21,6 +21,7 @@ import pytest
 
 from bench.accuracy.score import score_result
 from core.surface.ply import read_mesh
+from tests.signals import heed_interrupts
 
 pytestmark = pytest.mark.sample
 
@@ -77,11 +78,6 @@ class Ended:
         return {event["stage"] for event in ended if not event["reused"] and event["state"] != "skipped"}
 
 
-def _heed_interrupts() -> None:
-    """A shell lets its background jobs ignore SIGINT, and children inherit that: here it must arrive."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 def start(out: Path, *more: str, video: Path = VIDEO, annotations: Path | None = ANNOTATIONS) -> subprocess.Popen[str]:
     words = [str(video), *([str(annotations)] if annotations else []), "--out", str(out), "--preset", "draft", "--json"]
     command = [sys.executable, "-m", "cli.main", "run", *words, *more]
@@ -93,7 +89,7 @@ def start(out: Path, *more: str, video: Path = VIDEO, annotations: Path | None =
         stderr=pipe,
         text=True,
         start_new_session=True,
-        preexec_fn=_heed_interrupts,
+        preexec_fn=heed_interrupts,
     )
 
 

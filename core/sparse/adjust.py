@@ -2,8 +2,8 @@
 
 The bundle adjustments of the search stop early, which is right for a search and not for a result. COLMAP's
 global refinement (`IncrementalMapper.iterative_global_refinement`) is followed in its order: complete and
-merge tracks, adjust, filter, repeat. It differs in that it always runs to convergence, lets large residuals
-count less (Cauchy's loss: mismatches of up to 4 px pass the filters), and may free the principal point.
+merge tracks, adjust, filter, repeat. It differs in that it always runs to convergence, may let large
+residuals count less (Cauchy's loss: mismatches of up to 4 px pass the filters), and may free the principal point.
 """
 
 from __future__ import annotations

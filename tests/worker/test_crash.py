@@ -20,6 +20,7 @@ from store.db import open_sqlite
 from store.inspections import Inspections
 from store.models import Attempt
 from store.plan import Plan
+from tests.signals import heed_interrupts
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, journal
 
@@ -30,12 +31,7 @@ KILLS = int(os.environ.get("BLADEATLAS_TEST_KILLS", "4"))
 
 def start(place: Workplace) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "tests.worker.run_process", str(place.video), str(place.out)]
-    return subprocess.Popen(command, cwd=ROOT, preexec_fn=_heed_interrupts)
-
-
-def _heed_interrupts() -> None:
-    """A shell lets its background jobs ignore SIGINT, and children inherit that: here it must arrive."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return subprocess.Popen(command, cwd=ROOT, preexec_fn=heed_interrupts)
 
 
 def wait_for(condition: Callable[[], bool], seconds: float = 60.0) -> None:

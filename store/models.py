@@ -69,8 +69,29 @@ class Inspection(Base):
     input_digest: Mapped[str] = mapped_column(String(64))
     settings: Mapped[dict[str, Any]]
     out: Mapped[str]
+    """Folder of a local run; empty in a server, whose files are in the artifact store."""
     failed_stage: Mapped[str | None] = mapped_column(String(64))
     error: Mapped[dict[str, Any] | None]
+    owner: Mapped[str] = mapped_column(String(64), default="", index=True)
+    """Id of the API key that made it; empty without keys. Who asks with another key does not find it."""
+    label: Mapped[str] = mapped_column(String(256), default="")
+    external_id: Mapped[str] = mapped_column(String(256), default="", index=True)
+    parameters: Mapped[dict[str, Any] | None]
+    """As they were asked for; `settings` is what they meant."""
+    attempt: Mapped[int] = mapped_column(default=1)
+    """Grows with every retry."""
+    progress: Mapped[float] = mapped_column(default=0.0)
+    """Highest share shown in this attempt."""
+    published: Mapped[int] = mapped_column(default=0)
+    """The attempt whose files are in the artifact store. A plan that is over is shown as running until then."""
+    publisher: Mapped[str | None] = mapped_column(String(128))
+    publish_fence: Mapped[int] = mapped_column(default=0)
+    publish_expires_at: Mapped[datetime | None]
+    """The lease on publishing, as on a task."""
+    expires_at: Mapped[datetime | None] = mapped_column(index=True)
+    """When retention removes it."""
+    deleted_at: Mapped[datetime | None]
+    """The row outlives its files, so that its id answers 410."""
     previous: Mapped[list[str]]
     """Fingerprints of the plan before the last change of parameters: going back to it costs nothing."""
     created_at: Mapped[datetime]
@@ -258,3 +279,78 @@ class MetricRow(_Row, Base):
 
     name: Mapped[str] = mapped_column(String(192), primary_key=True)
     value: Mapped[float]
+
+
+class Upload(Base):
+    """One resumable upload (tus). The bytes lie in the upload folder under the id."""
+
+    __tablename__ = "uploads"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    owner: Mapped[str] = mapped_column(String(64), default="", index=True)
+    length: Mapped[int] = mapped_column(BigInteger)
+    offset: Mapped[int] = mapped_column(BigInteger, default=0)
+    """Bytes that were on disk for certain when this was committed."""
+    upload_metadata: Mapped[dict[str, Any]]
+    """tus's ``Upload-Metadata``, decoded."""
+    sha256: Mapped[str | None] = mapped_column(String(64))
+    """Of the whole file, once it is whole."""
+    created_at: Mapped[datetime]
+    updated_at: Mapped[datetime]
+    expires_at: Mapped[datetime | None] = mapped_column(index=True)
+    removed_at: Mapped[datetime | None]
+
+
+class Artifact(Base):
+    """A published file of an inspection."""
+
+    __tablename__ = "artifacts"
+
+    inspection_id: Mapped[str] = _inspection_key()
+    path: Mapped[str] = mapped_column(String(512), primary_key=True)
+    """Name of the contract, e.g. ``mapping/mesh_defects.ply``."""
+    key: Mapped[str] = mapped_column(String(640))
+    """Where it lies in the artifact store."""
+    size: Mapped[int] = mapped_column(BigInteger)
+    sha256: Mapped[str] = mapped_column(String(64))
+    media_type: Mapped[str] = mapped_column(String(128))
+    created_at: Mapped[datetime]
+
+
+class ApiKey(Base):
+    """Who may call. The key itself is shown once and never kept."""
+
+    __tablename__ = "api_keys"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    name: Mapped[str] = mapped_column(String(128))
+    digest: Mapped[str] = mapped_column(String(64), unique=True)
+    """SHA-256 of a key of 256 random bits: nothing to guess, so no salt and no slow hash."""
+    created_at: Mapped[datetime]
+    revoked_at: Mapped[datetime | None]
+    last_used_at: Mapped[datetime | None]
+
+
+class IdempotencyKey(Base):
+    """A request that must have one effect however often it is sent."""
+
+    __tablename__ = "idempotency_keys"
+
+    owner: Mapped[str] = mapped_column(String(64), primary_key=True)
+    key: Mapped[str] = mapped_column(String(256), primary_key=True)
+    body_sha256: Mapped[str] = mapped_column(String(64))
+    inspection_id: Mapped[str | None] = mapped_column(String(64))
+    """None while the first request is under way."""
+    created_at: Mapped[datetime]
+
+
+class Worker(Base):
+    """A process that leases tasks, as `/v1/system` shows it."""
+
+    __tablename__ = "workers"
+
+    name: Mapped[str] = mapped_column(String(128), primary_key=True)
+    host: Mapped[str] = mapped_column(String(128))
+    queues: Mapped[list[str]]
+    started_at: Mapped[datetime]
+    seen_at: Mapped[datetime]

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 from pydantic import Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
+from sqlalchemy import URL
 
 
 class DeploymentSettings(BaseSettings):
@@ -21,6 +23,32 @@ class DeploymentSettings(BaseSettings):
     heartbeat_s: float = Field(10.0, gt=0, description="leases are renewed this often, in seconds")
     max_attempts: int = Field(3, ge=1, description="attempts of a task that loses its process or a resource")
     task_memory_bytes: int = Field(0, ge=0, description="a task above this resident size is ended (oom); 0 = no limit")
+    task_seconds: float = Field(14_400.0, gt=0, description="a task that runs longer is ended (timeout), in seconds")
+    artifacts_url: str = Field(
+        "", description="where results are kept: fsspec URL, e.g. s3://bucket/prefix; empty = data folder"
+    )
+    artifacts_options: dict[str, Any] = Field({}, description="JSON for fsspec, e.g. endpoint_url and credentials")
+    broker_url: str = Field("", description="Celery broker, e.g. redis://host/0; empty = runners inside the server")
+    visibility_timeout_s: float = Field(
+        21_600.0, gt=0, description="the broker hands an unacknowledged message out again after this"
+    )
+    sweep_s: float = Field(10.0, gt=0, description="what was lost is looked for this often, in seconds")
+    retention_days: float = Field(30.0, ge=0, description="an inspection is removed so long after it ended; 0 = never")
+    upload_hours: float = Field(72.0, gt=0, description="an upload that nobody used is removed after this")
+    reserve_bytes: int = Field(2 << 30, ge=0, description="free space below which new work is refused (507)")
+    max_upload_bytes: int = Field(64 << 30, ge=1, description="largest upload")
+    max_annotations_bytes: int = Field(128 << 20, ge=1, description="largest annotation file")
+    max_active: int = Field(100, ge=1, description="inspections queued or running, at most; more get 429")
+    probe_seconds: float = Field(60.0, gt=0, description="time limit of looking into an uploaded video")
+    probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
+
+    def folder(self, name: str) -> Path:
+        """A folder of the data folder."""
+        return self.data_dir.absolute() / name
+
+    def database(self) -> str | URL:
+        """URL of the database."""
+        return self.database_url or URL.create("sqlite+pysqlite", database=str(self.folder("bladeatlas.db")))
 
     def worker_count(self) -> int:
         """Number of tasks side by side."""

@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 from fastapi import FastAPI
+from prometheus_client import CollectorRegistry
 
-from api import problems
-from api.routes import health, options, system
+from api import openapi, problems
+from api.middleware import RequestMetrics, RequestMiddleware
+from api.probing import Prober
+from api.resource import Resources
+from api.routes import actions, artifacts, frames, health, inspections, logs, options, stages, system, tables, uploads
+from api.services import Services, services_from
+from api.state import State
+from api.watching import Watcher
 from core.versions import program_version
+from store.keys import KeyRing, Keys
+from store.settings import DeploymentSettings
+
+_ROUTERS = (health, system, options, uploads, inspections, actions, stages, tables, logs, artifacts, frames)
 
 
-def create_app() -> FastAPI:
-    """Make the application with its routes and error handlers."""
+def create_app(services: Services | None = None) -> FastAPI:
+    """Make the application with its routes and error handlers.
+
+    Without `services` they are made from the environment (`DeploymentSettings`), tables included.
+    """
     app = FastAPI(
         title="BladeAtlas",
         version=program_version(),
@@ -18,8 +32,27 @@ def create_app() -> FastAPI:
         responses={
             "default": {"model": problems.Problem, "description": "Any error, as application/problem+json (RFC 9457)"}
         },
+        # A trailing slash names nothing: a redirect would lose the body of a form.
+        redirect_slashes=False,
     )
+    app.state.bladeatlas = state = _state(services or services_from(DeploymentSettings()))
     problems.install(app)
-    for module in (health, system, options):
+    openapi.install(app)
+    app.add_middleware(RequestMiddleware, metrics=RequestMetrics(state.registry))
+    for module in _ROUTERS:
         app.include_router(module.router)
     return app
+
+
+def _state(services: Services) -> State:
+    registry = CollectorRegistry()
+    registry.register(system.ServiceCollector(services))
+    resources = Resources(services)
+    return State(
+        services=services,
+        keys=KeyRing(Keys(services.db)),
+        resources=resources,
+        watcher=Watcher(resources.snapshot),
+        prober=Prober(services.settings),
+        registry=registry,
+    )

@@ -2,24 +2,48 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from http import HTTPStatus
+from typing import Any
 
+import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
 from core.errors import BadInput, BladeAtlasError, Cancelled, DiskFull, NoReconstruction, ResourceError
+from store.upload_file import UploadLocked
 
 MEDIA_TYPE = "application/problem+json"
 _STATUS: tuple[tuple[type[BladeAtlasError], HTTPStatus], ...] = (
     (BadInput, HTTPStatus.UNPROCESSABLE_ENTITY),
+    (UploadLocked, HTTPStatus.LOCKED),
     (NoReconstruction, HTTPStatus.CONFLICT),
     (Cancelled, HTTPStatus.CONFLICT),
     (DiskFull, HTTPStatus.INSUFFICIENT_STORAGE),
     (ResourceError, HTTPStatus.SERVICE_UNAVAILABLE),
 )
+_BY_CODE = {"conflict": HTTPStatus.CONFLICT, "bad_cursor": HTTPStatus.BAD_REQUEST}
+_RETRYABLE = {
+    HTTPStatus.LOCKED,
+    HTTPStatus.TOO_MANY_REQUESTS,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+    HTTPStatus.INSUFFICIENT_STORAGE,
+}
+_UNREACHABLE = "the database does not answer"
+
+log = structlog.get_logger("api")
+
+
+class FieldError(BaseModel):
+    """One place in the request that is wrong."""
+
+    pointer: str = Field(description="JSON pointer (RFC 6901) into the body, or into `/query`, `/path`, `/header`")
+    detail: str = Field(description="what is wrong with it")
 
 
 class Problem(BaseModel):
@@ -29,12 +53,15 @@ class Problem(BaseModel):
         json_schema_extra={
             "example": {
                 "type": "about:blank",
-                "title": "Unprocessable Content",
+                "title": "Unprocessable Entity",
                 "status": 422,
                 "detail": "unknown preset 'fast'; known: default, thesis, draft",
                 "instance": "/v1/presets/fast",
                 "code": "bad_input",
                 "where": "preset",
+                "request_id": "5f0c9cf5c9a14ab1a2c2e6b0c8a4b1de",
+                "retryable": False,
+                "errors": [],
             }
         }
     )
@@ -46,59 +73,146 @@ class Problem(BaseModel):
     instance: str = Field(description="path of the request")
     code: str = Field(description="stable code for programs")
     where: str = Field("", description="the field, option or place in a file that is wrong")
+    request_id: str = Field("", description="names this request in the server's log")
+    retryable: bool = Field(False, description="the same request may succeed later")
+    errors: list[FieldError] = Field([], description="every place that is wrong, where there are several")
+
+
+class Refused(Exception):
+    """A request that HTTP itself has a status for: no such thing, gone, too large, not yet."""
+
+    def __init__(
+        self,
+        status: HTTPStatus,
+        code: str,
+        detail: str,
+        *,
+        where: str = "",
+        headers: Mapping[str, str] | None = None,
+        errors: Sequence[FieldError] = (),
+        retryable: bool | None = None,
+    ) -> None:
+        super().__init__(detail)
+        self.status, self.code, self.detail, self.where = status, code, detail, where
+        self.headers, self.errors = dict(headers or {}), list(errors)
+        self.retryable = status in _RETRYABLE if retryable is None else retryable
+
+
+def not_found(what: str) -> Refused:
+    """404: there is no such thing, or it belongs to another key."""
+    return Refused(HTTPStatus.NOT_FOUND, "not_found", f"there is no such {what}")
 
 
 def install(app: FastAPI) -> None:
     """Answer every error of `app` as a problem."""
     app.add_exception_handler(BladeAtlasError, _expected)
+    app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(HTTPException, _http)
+    for kind in (OperationalError, InterfaceError, PoolTimeout, DBAPIError):
+        app.add_exception_handler(kind, _database)
     app.add_exception_handler(Exception, _unexpected)
+
+
+def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI's entries for the problems that a route may answer with."""
+    return {status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in statuses}
 
 
 def status_of(error: BladeAtlasError) -> HTTPStatus:
     """HTTP status of an expected error."""
+    if isinstance(error, BadInput) and error.code in _BY_CODE:
+        return _BY_CODE[error.code]
     return next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
+
+
+def field_errors(errors: Sequence[Any], below: str = "") -> list[FieldError]:
+    """What pydantic found, with JSON pointers."""
+    return [FieldError(pointer=below + pointer(error["loc"]), detail=str(error["msg"])) for error in errors]
+
+
+def pointer(parts: Sequence[Any]) -> str:
+    """JSON pointer of a path of keys and indices."""
+    return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in parts)
 
 
 def _expected(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, BladeAtlasError)  # registered for this class only
-    return _respond(request, status_of(error), error.message, error.code, error.where)
+    status = status_of(error)
+    return _respond(request, Refused(status, error.code, error.message, where=error.where, headers=_later(status)))
+
+
+def _refused(request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, Refused)  # registered for this class only
+    error.headers = {**_later(error.status), **error.headers}
+    return _respond(request, error)
 
 
 def _invalid(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)  # registered for this class only
-    first = error.errors()[0]
+    found = error.errors()
+    first = found[0]
+    if first["loc"][0] == "path":  # an id that does not parse names nothing
+        return _respond(request, not_found("thing"))
     where = ".".join(str(part) for part in first["loc"])
-    return _respond(request, HTTPStatus.UNPROCESSABLE_ENTITY, str(first["msg"]), "bad_request", where)
+    errors = [FieldError(pointer=pointer(_without_body(each["loc"])), detail=str(each["msg"])) for each in found]
+    status = HTTPStatus.UNPROCESSABLE_ENTITY
+    return _respond(request, Refused(status, "bad_request", str(first["msg"]), where=where, errors=errors))
+
+
+def _without_body(parts: Sequence[Any]) -> Sequence[Any]:
+    return parts[1:] if parts and parts[0] == "body" else parts
 
 
 def _http(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)  # registered for this class only
     status = HTTPStatus(error.status_code)
-    return _respond(request, status, str(error.detail), status.name.lower(), headers=dict(error.headers or {}))
+    return _respond(request, Refused(status, status.name.lower(), str(error.detail), headers=error.headers))
+
+
+def _database(request: Request, error: Exception) -> JSONResponse:
+    """The database is away: the client may come back. Its words may name hosts, so they stay in the log."""
+    lost = isinstance(error, OperationalError | InterfaceError | PoolTimeout)
+    if not lost and not (isinstance(error, DBAPIError) and error.connection_invalidated):
+        return _unexpected(request, error)
+    log.warning("database_unreachable", request_id=request_id(request), error=type(error).__name__)
+    status = HTTPStatus.SERVICE_UNAVAILABLE
+    return _respond(request, Refused(status, "database_unreachable", _UNREACHABLE, headers=_later(status)))
 
 
 def _unexpected(request: Request, error: Exception) -> JSONResponse:
     # The cause goes to the log of the server, never to the client.
-    return _respond(request, HTTPStatus.INTERNAL_SERVER_ERROR, "an internal error happened", "internal")
+    log.error("unexpected_error", request_id=request_id(request), path=request.url.path, exc_info=error)
+    return _respond(request, Refused(HTTPStatus.INTERNAL_SERVER_ERROR, "internal", "an internal error happened"))
 
 
-def _respond(
-    request: Request,
-    status: HTTPStatus,
-    detail: str,
-    code: str,
-    where: str = "",
-    headers: dict[str, str] | None = None,
-) -> JSONResponse:
+def _later(status: HTTPStatus) -> dict[str, str]:
+    waits = {HTTPStatus.LOCKED: "1", HTTPStatus.SERVICE_UNAVAILABLE: "5", HTTPStatus.INSUFFICIENT_STORAGE: "60"}
+    return {"Retry-After": waits[status]} if status in waits else {}
+
+
+def request_id(request: Request) -> str:
+    """The request's name; empty before the middleware gave it one."""
+    return str(getattr(request.state, "request_id", ""))
+
+
+def _respond(request: Request, refused: Refused) -> JSONResponse:
     problem = Problem(
         type="about:blank",
-        title=status.phrase,
-        status=status.value,
-        detail=detail,
+        title=refused.status.phrase,
+        status=refused.status.value,
+        detail=refused.detail,
         instance=request.url.path,
-        code=code,
-        where=where,
+        code=refused.code,
+        where=refused.where,
+        request_id=request_id(request),
+        retryable=refused.retryable,
+        errors=refused.errors,
     )
-    return JSONResponse(problem.model_dump(), status.value, headers=headers, media_type=MEDIA_TYPE)
+    # "ignore": a path or a value may hold what is no character, and an error must still be told.
+    body = problem.model_dump_json().encode("utf-8", "ignore")
+    headers = {"X-Request-Id": problem.request_id, **refused.headers}
+    response = JSONResponse(None, refused.status.value, headers=headers, media_type=MEDIA_TYPE)
+    response.body = body
+    response.headers["Content-Length"] = str(len(body))
+    return response

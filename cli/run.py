@@ -7,9 +7,9 @@ import sys
 from typing import Any
 
 from cli import exits, parameters, progress, report
-from cli.preflight import check_input
 from core.errors import BadInput
 from core.graph import STAGES
+from core.intake import check_input
 from worker.outcome import Outcome
 from worker.run import run_inspection
 

@@ -50,6 +50,24 @@ class ArtifactStore:
             digest, size = _copy(read, write)
         return Stored(path, size, digest)
 
+    def adopt(self, path: str, source: Path) -> None:
+        """Store the file `source`, whose bytes nobody changes any more, without a copy where the disk allows it."""
+        if not self._local:
+            self.put(path, source)
+            return
+        final = Path(self._full(path))
+        final.parent.mkdir(parents=True, exist_ok=True)
+        part = final.with_name(f".part-{uuid.uuid4().hex}")
+        try:
+            sync_path(source)
+            os.link(source, part)
+        except OSError:  # another disk, or one without links
+            self.put(path, source)
+            return
+        part.replace(final)
+        part.unlink(missing_ok=True)  # between two names of one file a rename does nothing
+        sync_path(final.parent)
+
     @contextmanager
     def open(self, path: str) -> Iterator[IO[bytes]]:
         """Read a file; FileNotFoundError when there is none."""
@@ -69,10 +87,13 @@ class ArtifactStore:
         with suppress(FileNotFoundError):
             self._fs.rm_file(self._full(path))
 
-    def list(self) -> list[str]:
-        """Relative paths of all files, sorted; temporary files of writes that were cut off are not files."""
+    def list(self, below: str = "") -> list[str]:
+        """Relative paths of all files, or of those below a folder, sorted.
+
+        Temporary files of writes that were cut off are not files.
+        """
         root = self._root.rstrip("/") + "/"
-        found = (str(name).removeprefix(root) for name in self._fs.find(self._root))
+        found = (str(name).removeprefix(root) for name in self._fs.find(self._full(below) if below else self._root))
         return sorted(name for name in found if not PurePosixPath(name).name.startswith(".part-"))
 
     def sweep(self) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
 
 from core.errors import BadInput
 from core.fingerprint import digest_of
@@ -15,7 +16,7 @@ from store.advance import advance
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import input_files, lock_inspection, put_result
-from store.models import Inspection, Task
+from store.models import ACTIVE_INSPECTION, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, InspectionView, Result, TaskView
 from store.rows import clear_rows, replace_rows
@@ -36,39 +37,50 @@ class Inspections:
     def create(self, inspection_id: str, files: InputFiles, settings: Settings, out: str) -> None:
         """A new inspection with the first tasks of its plan."""
         with self.db.write() as session:
-            now = self.db.now(session)
-            inspection = Inspection(
-                id=inspection_id,
-                state="queued",
-                video_path=files.video,
-                video_sha256=files.video_sha256,
-                annotations_path=files.annotations,
-                annotations_sha256=files.annotations_sha256,
-                input_digest=input_digest(files),
-                settings=settings.model_dump(mode="json"),
-                out=out,
-                previous=[],
-                created_at=now,
-                updated_at=now,
-            )
-            session.add(inspection)
-            session.flush()
-            advance(session, self.graph, inspection, now)
+            self.create_in(session, inspection_id, files, settings, out)
 
-    def reopen(self, inspection_id: str, files: InputFiles, settings: Settings) -> None:
+    def create_in(
+        self, session: Session, inspection_id: str, files: InputFiles, settings: Settings, out: str, **more: Any
+    ) -> None:
+        """The same inside the caller's transaction; `more` are further columns, e.g. owner and label."""
+        now = self.db.now(session)
+        inspection = Inspection(
+            id=inspection_id,
+            state="queued",
+            video_path=files.video,
+            video_sha256=files.video_sha256,
+            annotations_path=files.annotations,
+            annotations_sha256=files.annotations_sha256,
+            input_digest=input_digest(files),
+            settings=settings.model_dump(mode="json"),
+            out=out,
+            previous=[],
+            created_at=now,
+            updated_at=now,
+            **more,
+        )
+        session.add(inspection)
+        session.flush()
+        advance(session, self.graph, inspection, now)
+
+    def reopen(
+        self, inspection_id: str, files: InputFiles, settings: Settings, *, ended_only: bool = False, **more: Any
+    ) -> None:
         """Plan an inspection anew, with other parameters, another input, or the same after a stop.
 
         The plan is rebuilt from nothing; finished fingerprints are taken up again, so only what changed is
         left to do, and failed tasks get a new chance. Old leases end: their results will be refused.
+        With `ended_only` an inspection that is not over is left alone; `more` are further columns.
 
         Raises:
-            BadInput: a task is leased (cancel first, or take over leases of owners that are gone).
+            BadInput: `conflict` when a task is leased (cancel first, or take over leases of owners that are
+                gone), or when it is not over and must be.
         """
         chosen = settings.model_dump(mode="json")
         with self.db.write() as session:
             inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
             tasks = session.scalars(select(Task).where(Task.inspection_id == inspection_id)).all()
-            if any(task.state == "leased" for task in tasks):
+            if any(task.state == "leased" for task in tasks) or (ended_only and inspection.state in ACTIVE_INSPECTION):
                 raise BadInput("the inspection is still being worked on", code="conflict", where=inspection_id)
             if chosen != inspection.settings or input_digest(files) != inspection.input_digest:
                 inspection.previous = sorted({task.fingerprint for task in tasks if task.fingerprint})
@@ -81,6 +93,9 @@ class Inspections:
             inspection.input_digest, inspection.settings = input_digest(files), chosen
             inspection.state, inspection.error, inspection.failed_stage = "queued", None, None
             inspection.started_at, inspection.ended_at = None, None
+            inspection.attempt, inspection.progress, inspection.expires_at = inspection.attempt + 1, 0.0, None
+            for column, value in more.items():
+                setattr(inspection, column, value)
             advance(session, self.graph, inspection, now)
 
     def find(self) -> list[InspectionView]:

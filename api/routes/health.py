@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import socket
+from collections.abc import Callable
+from http import HTTPStatus
 from typing import Literal
+from urllib.parse import urlsplit
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
+from sqlalchemy import text
 
-from core.settings import PRESET_NAMES, make_settings
+from api.limits import require_space
+from api.problems import FieldError, Refused, responses
+from api.services import Services
+from api.state import state_of
 
 router = APIRouter(tags=["health"])
+
+_BROKER_WAIT_S = 1.0
+_PORTS = {"redis": 6379, "rediss": 6379, "amqp": 5672, "amqps": 5671}
 
 
 class Health(BaseModel):
@@ -21,7 +32,11 @@ class Health(BaseModel):
 class Readiness(BaseModel):
     """What was checked, and that it works."""
 
-    model_config = ConfigDict(json_schema_extra={"example": {"status": "ready", "checks": {"presets": "ok"}}})
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {"status": "ready", "checks": {"database": "ok", "artifacts": "ok", "disk": "ok"}}
+        }
+    )
 
     status: Literal["ready"] = "ready"
     checks: dict[str, str] = Field(description="each check and its result")
@@ -33,9 +48,43 @@ def healthz() -> Health:
     return Health(status="ok")
 
 
-@router.get("/readyz", summary="Can the service answer?")
-def readyz() -> Readiness:
-    """Build every preset: what the other routes serve depends on nothing else."""
-    for preset in PRESET_NAMES:
-        make_settings(preset)
-    return Readiness(checks={"presets": "ok"})
+@router.get("/readyz", summary="Can the service take work?", responses=responses(503))
+def readyz(request: Request) -> Readiness:
+    """Ask everything that new work needs: database, artifact store, disk, and the broker where there is one."""
+    services = state_of(request).services
+    checks: dict[str, Callable[[Services], None]] = {"database": _database, "artifacts": _artifacts, "disk": _disk}
+    if services.settings.broker_url:
+        checks["broker"] = _broker
+    failed = [name for name, check in checks.items() if not _passes(check, services)]
+    if failed:
+        errors = [FieldError(pointer=f"/checks/{name}", detail="does not answer, or has no space") for name in failed]
+        detail = f"not ready: {', '.join(failed)}"
+        raise Refused(HTTPStatus.SERVICE_UNAVAILABLE, "not_ready", detail, errors=errors)
+    return Readiness(checks=dict.fromkeys(checks, "ok"))
+
+
+def _passes(check: Callable[[Services], None], services: Services) -> bool:
+    try:
+        check(services)
+    except Exception:  # noqa: BLE001 - whatever goes wrong in a check is its result
+        return False
+    return True
+
+
+def _database(services: Services) -> None:
+    with services.db.read() as session:
+        session.execute(text("SELECT 1 FROM inspections LIMIT 1"))
+
+
+def _artifacts(services: Services) -> None:
+    services.artifacts.exists("inputs/none")
+
+
+def _disk(services: Services) -> None:
+    require_space(services)
+
+
+def _broker(services: Services) -> None:
+    parts = urlsplit(services.settings.broker_url)
+    port = parts.port or _PORTS.get(parts.scheme, 0)
+    socket.create_connection((parts.hostname or "127.0.0.1", port), timeout=_BROKER_WAIT_S).close()

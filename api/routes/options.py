@@ -1,16 +1,21 @@
-"""Options and presets: what a run can be asked for."""
+"""Options, presets and limits: what an inspection can be asked for."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from fastapi import APIRouter, Depends, Request
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from core.settings import PRESET_NAMES, Settings, make_settings
+from api.auth import caller
+from api.creating import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
+from api.problems import responses
+from api.schemas import Parameters
+from api.state import state_of
+from core.settings import PRESET_NAMES, Settings, make_settings, option_names
 from core.settings.describe import describe_options
 
-router = APIRouter(prefix="/v1", tags=["options"])
+router = APIRouter(prefix="/v1", tags=["options"], dependencies=[Depends(caller)], responses=responses(401))
 
 _OPTION_EXAMPLE: dict[str, Any] = {
     "name": "matching.window",
@@ -43,10 +48,15 @@ class Options(BaseModel):
     model_config = ConfigDict(json_schema_extra={"example": {"options": [_OPTION_EXAMPLE]}})
 
     options: list[Option]
+    json_schema: dict[str, Any] = Field({}, description="JSON Schema of the document `parameters`")
 
 
 class Presets(BaseModel):
     """Every preset's full settings and their JSON Schema."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"example": {"presets": {"draft": {"matching": {"window": 5}}}, "json_schema": {}}}
+    )
 
     presets: dict[str, dict[str, Any]] = Field(description="preset and all its values")
     json_schema: dict[str, Any] = Field(description="JSON Schema of these settings")
@@ -55,6 +65,8 @@ class Presets(BaseModel):
 class Preset(BaseModel):
     """One preset's full settings."""
 
+    model_config = ConfigDict(json_schema_extra={"example": {"name": "draft", "settings": {"matching": {"window": 5}}}})
+
     name: str
     settings: dict[str, Any]
 
@@ -62,7 +74,23 @@ class Preset(BaseModel):
 @router.get("/options", summary="Every option: meaning, unit, default, range, source")
 def options() -> Options:
     """List all options; a run refuses any other name."""
-    return Options(options=[Option(**option.to_dict()) for option in describe_options()])
+    return Options(options=[Option(**option.to_dict()) for option in describe_options()], json_schema=_schema())
+
+
+def _schema() -> dict[str, Any]:
+    """JSON Schema of the parameters with every option under its dotted name."""
+    schema = Parameters.model_json_schema()
+    schema["properties"]["preset"]["enum"] = list(PRESET_NAMES)
+    options = {name: _option_schema(info) for name, info in option_names().items()}
+    schema["properties"]["options"] = {"type": "object", "additionalProperties": False, "properties": options}
+    return schema
+
+
+def _option_schema(info: Any) -> dict[str, Any]:
+    """JSON Schema of one option: type, range, default, meaning, unit, source."""
+    adapter: TypeAdapter[Any] = TypeAdapter(Annotated[info.annotation, *info.metadata])
+    known = {"default": info.get_default(), "description": info.description, **(info.json_schema_extra or {})}
+    return {**adapter.json_schema(), **known}
 
 
 @router.get("/presets", summary="Presets and the JSON Schema of settings")
@@ -72,7 +100,48 @@ def presets() -> Presets:
     return Presets(presets=values, json_schema=Settings.model_json_schema())
 
 
-@router.get("/presets/{name}", summary="One preset")
+@router.get("/presets/{name}", summary="One preset", responses=responses(422))
 def preset(name: str) -> Preset:
     """All values of one preset; 422 for an unknown name."""
     return Preset(name=name, settings=make_settings(name).model_dump(mode="json"))
+
+
+class Limits(BaseModel):
+    """What this server takes."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {
+                "max_upload_bytes": 68719476736,
+                "max_annotations_bytes": 134217728,
+                "max_parameters_bytes": 1048576,
+                "max_json_bytes": 8388608,
+                "max_active": 100,
+                "upload_hours": 72.0,
+                "retention_days": 30.0,
+            }
+        }
+    )
+
+    max_upload_bytes: int = Field(description="largest upload, and largest video of a form")
+    max_annotations_bytes: int = Field(description="largest annotation file")
+    max_parameters_bytes: int = Field(description="largest `parameters` of a form")
+    max_json_bytes: int = Field(description="largest JSON body")
+    max_active: int = Field(description="inspections queued or running at once; more get 429")
+    upload_hours: float = Field(description="an upload that nobody used is removed after this")
+    retention_days: float = Field(description="an inspection is removed so long after it ended; 0 = never")
+
+
+@router.get("/limits", summary="What this server takes")
+def limits(request: Request) -> Limits:
+    """Sizes in bytes, times in hours and days."""
+    settings = state_of(request).services.settings
+    return Limits(
+        max_upload_bytes=settings.max_upload_bytes,
+        max_annotations_bytes=settings.max_annotations_bytes,
+        max_parameters_bytes=MAX_PARAMETERS_BYTES,
+        max_json_bytes=MAX_INLINE_BYTES,
+        max_active=settings.max_active,
+        upload_hours=settings.upload_hours,
+        retention_days=settings.retention_days,
+    )

@@ -9,23 +9,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.gallery.palette import RGB
 from core.mapping.rows import DetectionRow
 
 U8 = NDArray[np.uint8]
-RGB = tuple[int, int, int]
 Plate = tuple[int, int, int, int]
-
-PALETTE: tuple[RGB, ...] = (
-    (255, 176, 0),
-    (86, 180, 233),
-    (240, 90, 160),
-    (0, 200, 150),
-    (190, 130, 255),
-    (240, 228, 66),
-    (255, 110, 60),
-    (160, 220, 90),
-)
-"""Colours that stay apart on grey metal and for most kinds of colour blindness; labels take them in order."""
 
 _DASH_PX = 7
 _INK: RGB = (40, 44, 48)
@@ -83,11 +71,6 @@ def choose_frames(frames: Sequence[FrameBoxes], limit: int) -> list[FrameBoxes]:
     for frame in ranked:
         chosen.setdefault(frame.source_index, frame)
     return sorted(list(chosen.values())[:limit], key=lambda frame: frame.source_index)
-
-
-def label_colors(labels: Sequence[str]) -> dict[str, RGB]:
-    """A colour for each label, by alphabet."""
-    return {label: PALETTE[i % len(PALETTE)] for i, label in enumerate(sorted(set(labels)))}
 
 
 def draw_boxes(rgb: U8, rows: Sequence[DetectionRow], colors: Mapping[str, RGB]) -> U8:

@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 
 from core.errors import DiskFull
-from core.gallery.boxes import FrameBoxes, choose_frames, draw_boxes, draw_defect_numbers, group_by_frame, label_colors
+from core.gallery.boxes import FrameBoxes, choose_frames, draw_boxes, draw_defect_numbers, group_by_frame
 from core.gallery.page import gallery_page
+from core.gallery.palette import label_colors
 from core.mapping.rows import DetectionRow
 from core.render import Renderer
 from core.report.tables import read_json

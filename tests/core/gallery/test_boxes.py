@@ -3,14 +3,13 @@ from __future__ import annotations
 import numpy as np
 
 from core.gallery.boxes import (
-    PALETTE,
     FrameBoxes,
     choose_frames,
     draw_boxes,
     draw_defect_numbers,
     group_by_frame,
-    label_colors,
 )
+from core.gallery.palette import PALETTE, label_colors
 from tests.core.making_rows import mapped, unplaced
 
 BLACK = np.zeros((200, 300, 3), np.uint8)

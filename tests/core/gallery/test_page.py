@@ -9,8 +9,9 @@ from html.parser import HTMLParser
 
 import pytest
 
-from core.gallery.boxes import FrameBoxes, label_colors
+from core.gallery.boxes import FrameBoxes
 from core.gallery.page import gallery_page
+from core.gallery.palette import label_colors
 from core.timeline.clusters import cluster_detections
 from core.timeline.events import event_rows, with_defect_ids
 from tests.core.making_rows import mapped, unplaced

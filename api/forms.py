@@ -1,0 +1,174 @@
+"""`multipart/form-data` streamed to disk: no part is ever in memory as a whole, none grows past its limit."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import AsyncIterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from http import HTTPStatus
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from python_multipart.exceptions import MultipartParseError
+from python_multipart.multipart import MultipartParser, parse_options_header
+
+from api.limits import require_space
+from api.problems import FieldError, Refused
+from api.receiving import PIECE, on_disk
+from api.services import Services
+from core.errors import DiskFull
+from store.disk import NO_SPACE
+
+if TYPE_CHECKING:
+    from hashlib import _Hash
+
+_DISPOSITION = b"content-disposition"
+_BOUNDARY = re.compile(rb"[0-9A-Za-z'()+_,./:=? -]{1,70}")
+
+
+@dataclass
+class Part:
+    """One part of the form as it arrived: a file, and what its bytes hash to."""
+
+    name: str
+    path: Path
+    limit: int
+    size: int = 0
+    _digest: _Hash = field(default_factory=hashlib.sha256)
+    _buffer: bytearray = field(default_factory=bytearray)
+
+    @property
+    def sha256(self) -> str:
+        """Of everything that came."""
+        return self._digest.hexdigest()
+
+    def take(self, data: bytes) -> None:
+        """Keep some bytes until `flush`; 413 above the limit."""
+        self.size += len(data)
+        if self.size > self.limit:
+            detail = f"'{self.name}' may have at most {self.limit} bytes"
+            errors = [FieldError(pointer=f"/{self.name}", detail=detail)]
+            status = HTTPStatus.REQUEST_ENTITY_TOO_LARGE
+            raise Refused(status, "too_large", detail, where=self.name, errors=errors)
+        self._buffer += data
+
+    async def flush(self, at_least: int = 0) -> None:
+        """Write what is kept once it is worth a write."""
+        if len(self._buffer) > at_least:
+            data, self._buffer = bytes(self._buffer), bytearray()
+            await on_disk(partial(self._append, data))
+
+    def _append(self, data: bytes) -> None:
+        self._digest.update(data)
+        try:
+            with self.path.open("ab") as stream:
+                stream.write(data)
+        except OSError as error:
+            if error.errno in NO_SPACE:
+                raise DiskFull("the form cannot be kept: no space left on its disk", where=self.name) from error
+            raise
+
+
+class FormReader:
+    """Reads one form; `parts` holds what came, by name. Call `discard` when it is no longer needed."""
+
+    def __init__(self, services: Services, limits: Mapping[str, int]) -> None:
+        self.parts: dict[str, Part] = {}
+        self._services, self._limits = services, limits
+        self._current: Part | None = None
+        self._header, self._value = b"", b""
+        self._disposition = b""
+        self._ended = False
+
+    async def read(self, content_type: str, body: AsyncIterator[bytes]) -> dict[str, Part]:
+        """Take in the whole form.
+
+        Raises:
+            Refused: 400 for what is no form or was cut off, 413 for a part above its limit, 422 for a part
+                that is not known or comes twice.
+        """
+        parser = MultipartParser(_boundary(content_type), callbacks=self._callbacks())
+        try:
+            async for chunk in body:
+                for start in range(0, len(chunk), PIECE):
+                    parser.write(chunk[start : start + PIECE])
+                    await self._flush(PIECE)
+                require_space(self._services)
+        except MultipartParseError as error:
+            raise _malformed(f"the form is malformed: {error}") from None
+        if not self._ended:
+            raise _malformed("the form was cut off before its end")
+        await self._flush(0)
+        return self.parts
+
+    def discard(self) -> None:
+        """Remove every file that came; one that was stored elsewhere lives on there."""
+        for part in self.parts.values():
+            part.path.unlink(missing_ok=True)
+
+    async def _flush(self, at_least: int) -> None:
+        for part in self.parts.values():
+            # A finished part is written at once, so that memory holds one piece whatever the parts are.
+            await part.flush(at_least if part is self._current else 0)
+
+    def _callbacks(self) -> dict[str, object]:
+        return {
+            "on_part_begin": self._begin,
+            "on_header_field": self._header_field,
+            "on_header_value": self._header_value,
+            "on_header_end": self._header_end,
+            "on_headers_finished": self._headers_finished,
+            "on_part_data": self._data,
+            "on_part_end": self._end,
+            "on_end": self._finish,
+        }
+
+    def _begin(self) -> None:
+        self._disposition = b""
+
+    def _header_field(self, data: bytes, start: int, end: int) -> None:
+        self._header += data[start:end]
+
+    def _header_value(self, data: bytes, start: int, end: int) -> None:
+        self._value += data[start:end]
+
+    def _header_end(self) -> None:
+        if self._header.lower() == _DISPOSITION:
+            self._disposition = self._value
+        self._header, self._value = b"", b""
+
+    def _headers_finished(self) -> None:
+        _, options = parse_options_header(self._disposition)
+        name = options.get(b"name", b"").decode("utf-8", "replace")
+        if name not in self._limits or name in self.parts:
+            detail = f"the part '{name}' comes twice" if name in self.parts else f"unknown part '{name[:64]}'"
+            detail += f"; known: {', '.join(self._limits)}"
+            errors = [FieldError(pointer=f"/{name[:64]}", detail=detail)]
+            raise Refused(HTTPStatus.UNPROCESSABLE_ENTITY, "bad_part", detail, where=name[:64], errors=errors)
+        part = Part(name, self._services.uploads.part(), self._limits[name])
+        part.path.touch(mode=0o600)
+        self._current = self.parts[name] = part
+
+    def _data(self, data: bytes, start: int, end: int) -> None:
+        assert self._current is not None  # the parser tells the headers first
+        self._current.take(data[start:end])
+
+    def _end(self) -> None:
+        self._current = None
+
+    def _finish(self) -> None:
+        self._ended = True
+
+
+def _boundary(content_type: str) -> bytes:
+    _, options = parse_options_header(content_type)
+    boundary = options.get(b"boundary", b"")
+    if not _BOUNDARY.fullmatch(boundary):
+        raise _malformed("the form's content type names no boundary")
+    return boundary
+
+
+def _malformed(detail: str) -> Refused:
+    return Refused(HTTPStatus.BAD_REQUEST, "bad_form", detail)

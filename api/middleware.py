@@ -1,0 +1,74 @@
+"""Around every request: a name for it, the time it took, and headers that every answer has."""
+
+from __future__ import annotations
+
+import re
+import time
+import uuid
+
+from prometheus_client import CollectorRegistry, Counter, Histogram
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+_USABLE = re.compile(r"[A-Za-z0-9._-]{1,64}")
+_BUCKETS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0, 60.0)
+
+
+class RequestMetrics:
+    """Counts and durations of requests, by route and not by path, so that ids make no new series."""
+
+    def __init__(self, registry: CollectorRegistry) -> None:
+        labels = ("method", "route", "status")
+        self._requests = Counter("bladeatlas_http_requests", "requests answered", labels, registry=registry)
+        self._seconds = Histogram(
+            "bladeatlas_http_request_seconds",
+            "time until the answer was through",
+            ("method", "route"),
+            buckets=_BUCKETS,
+            registry=registry,
+        )
+
+    def note(self, scope: Scope, status: int, seconds: float) -> None:
+        """Count one request."""
+        route = getattr(scope.get("route"), "path", "none")
+        method = scope["method"] if route != "none" else "any"
+        self._requests.labels(method, route, str(status)).inc()
+        self._seconds.labels(method, route).observe(seconds)
+
+
+class RequestMiddleware:
+    """Pure ASGI: streams pass through untouched."""
+
+    def __init__(self, app: ASGIApp, metrics: RequestMetrics) -> None:
+        self._app = app
+        self._metrics = metrics
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Name the request, answer it, count it."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        name = _request_id(scope)
+        scope.setdefault("state", {})["request_id"] = name
+        started, status = time.monotonic(), 500
+
+        async def named(message: Message) -> None:
+            nonlocal status
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                headers = MutableHeaders(scope=message)
+                headers["X-Request-Id"] = name
+                headers.setdefault("X-Content-Type-Options", "nosniff")
+                headers.setdefault("Cache-Control", "no-cache")
+            await send(message)
+
+        try:
+            await self._app(scope, receive, named)
+        finally:
+            self._metrics.note(scope, status, time.monotonic() - started)
+
+
+def _request_id(scope: Scope) -> str:
+    """The client's own name for the request when it is harmless in a log, else a new one."""
+    given = Headers(scope=scope).get("x-request-id", "")
+    return given if _USABLE.fullmatch(given) else uuid.uuid4().hex

@@ -1,0 +1,166 @@
+"""Bytes from the network to the disk: a piece in memory at a time, and nothing confirmed that is not on disk."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Callable
+from functools import partial
+from http import HTTPStatus
+from typing import TypeVar
+
+import anyio
+from fastapi import Request
+from starlette.requests import ClientDisconnect
+
+from api.limits import require_space
+from api.problems import Refused
+from api.services import Services
+from api.state import State
+from store.upload_file import UploadFile
+from store.uploads import UploadView
+
+T = TypeVar("T")
+
+PIECE = 1 << 20
+_COMMIT_EVERY_BYTES = 64 << 20
+_COMMIT_EVERY_S = 2.0
+"""A killed server loses at most so much of what a client sent."""
+_SILENCE_S = 60.0
+"""A client that sends nothing for so long has gone without a word; its upload is free for the next request."""
+_DISK_THREADS = 8
+"""Threads that wait for disks: a few, so that many uploads leave threads to those who only ask."""
+
+
+class DiskThreads:
+    """Where calls run that wait for a disk; one limit per event loop."""
+
+    def __init__(self) -> None:
+        self._limiter: anyio.CapacityLimiter | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    async def run(self, call: Callable[[], T]) -> T:
+        """Run a call in a thread."""
+        loop = asyncio.get_running_loop()
+        if self._limiter is None or self._loop is not loop:
+            self._limiter, self._loop = anyio.CapacityLimiter(_DISK_THREADS), loop
+        return await anyio.to_thread.run_sync(call, limiter=self._limiter)
+
+
+on_disk = DiskThreads().run
+"""Run a call that waits for the disk in a thread."""
+
+
+async def body_of(request: Request) -> AsyncIterator[bytes]:
+    """Pieces of the body as they come; ends early when the client goes or falls silent."""
+    stream = request.stream()
+    while True:
+        try:
+            async with asyncio.timeout(_SILENCE_S):
+                chunk = await anext(stream)
+        except (StopAsyncIteration, ClientDisconnect, TimeoutError):
+            return
+        if chunk:
+            yield chunk
+
+
+class _Writer:
+    """Writes one piece while the next one comes in."""
+
+    def __init__(self, services: Services, upload: UploadView, file: UploadFile) -> None:
+        self._services, self._upload, self._file = services, upload, file
+        self._under_way: asyncio.Future[None] | None = None
+        self._committed, self._committed_at = file.offset, time.monotonic()
+
+    async def write(self, piece: bytes) -> None:
+        """Hand over a piece, once the one before is written."""
+        await self._settle()
+        self._under_way = asyncio.ensure_future(on_disk(partial(self._store, piece)))
+
+    async def finish(self) -> None:
+        """Everything that was handed over is on disk and committed."""
+        await self._settle()
+        await on_disk(self._commit)
+
+    async def _settle(self) -> None:
+        under_way, self._under_way = self._under_way, None
+        if under_way is not None:
+            await under_way
+
+    def _store(self, piece: bytes) -> None:
+        self._file.write(piece)
+        due = self._file.offset - self._committed >= _COMMIT_EVERY_BYTES
+        if due or time.monotonic() - self._committed_at >= _COMMIT_EVERY_S:
+            self._commit()
+            require_space(self._services)
+
+    def _commit(self) -> None:
+        file = self._file
+        if file.offset == self._committed and file.offset < self._upload.length:
+            return
+        file.sync()  # before the commit: a committed byte is on disk, whatever happens to the power
+        digest = file.sha256() if file.offset == self._upload.length else None
+        if not self._services.uploads.commit(self._upload.id, file.offset, digest):
+            raise Refused(HTTPStatus.GONE, "gone", "this upload was removed")
+        self._committed, self._committed_at = file.offset, time.monotonic()
+
+
+async def receive_patch(request: Request, state: State, upload: UploadView, declared: int) -> int:
+    """Append the body of a PATCH to an upload; returns the offset that is safe.
+
+    Raises:
+        Refused: 409 when `declared` is not the offset, 413 for more bytes than were announced.
+        UploadLocked: another request writes to it.
+        DiskFull: the reserve of the disk is reached; what arrived before is kept.
+    """
+    _require_fit(upload, declared, request.headers.get("content-length"))
+    with await on_disk(partial(_open, state, upload)) as file:
+        if declared != file.offset:
+            headers = {"Upload-Offset": str(file.offset)}
+            detail = f"the upload stands at {file.offset}, not at {declared}"
+            raise Refused(HTTPStatus.CONFLICT, "offset", detail, where="Upload-Offset", headers=headers)
+        writer, room = _Writer(state.services, upload, file), upload.length - file.offset
+        buffer = bytearray()
+        try:
+            async for chunk in body_of(request):
+                room -= len(chunk)
+                if room < 0:
+                    raise _too_much(upload)
+                buffer += chunk
+                if len(buffer) >= PIECE:
+                    await writer.write(bytes(buffer))
+                    buffer.clear()
+            if buffer:
+                await writer.write(bytes(buffer))
+        finally:
+            await writer.finish()
+        return file.offset
+
+
+def _open(state: State, upload: UploadView) -> UploadFile:
+    """The file, locked first and asked for its offset then: another request may just have moved it."""
+    uploads = state.services.uploads
+    try:
+        file = UploadFile(uploads.path(upload.id), state.digests)
+    except FileNotFoundError:
+        raise Refused(HTTPStatus.GONE, "gone", "this upload was removed") from None
+    try:
+        now = uploads.find(upload.id, upload.owner)
+        if now is None or now.removed:
+            raise Refused(HTTPStatus.GONE, "gone", "this upload was removed")
+        file.resume(now.offset)
+    except BaseException:
+        file.close()
+        raise
+    return file
+
+
+def _require_fit(upload: UploadView, declared: int, content_length: str | None) -> None:
+    """Refuse a body that is known to be too long before any of it is read."""
+    if content_length and content_length.isdigit() and declared + int(content_length) > upload.length:
+        raise _too_much(upload)
+
+
+def _too_much(upload: UploadView) -> Refused:
+    detail = f"more bytes than the announced {upload.length}"
+    return Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "too_large", detail, where="Upload-Length")

@@ -1,0 +1,98 @@
+"""The stages of an inspection in full."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from datetime import datetime
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+from pydantic import ConfigDict, Field, RootModel
+from sqlalchemy import select
+
+from api.auth import CallerOf
+from api.finding import find_inspection
+from api.negotiation import CSV_RESPONSE, Format, table
+from api.problems import not_found, responses
+from api.schemas import EXAMPLE_STAGE, StageItem
+from api.services import Services
+from api.state import State, state_of
+from store.models import Attempt
+from store.status import StageStatus, Statuses
+
+router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["inspections"])
+
+_MORE_EXAMPLE = {"ended_at": None, "attempts": 4, "reused": 0, "seconds": 84.2, "peak_rss_bytes": 512000000}
+
+
+class StageDetail(StageItem):
+    """One stage with what it took."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"example": {**EXAMPLE_STAGE, **_MORE_EXAMPLE, "workers": ["host-a:812/0"]}}
+    )
+
+    ended_at: datetime | None
+    attempts: int = Field(description="attempts of its tasks, those given back unharmed not counted")
+    reused: int = Field(description="tasks whose result was already there")
+    seconds: float = Field(description="summed over its tasks")
+    peak_rss_bytes: int | None = Field(description="largest resident size of one task")
+    workers: list[str] = Field(description="who worked on it")
+
+
+StageTable = RootModel[list[StageDetail]]
+_COLUMNS = (
+    "name",
+    "state",
+    "done",
+    "total",
+    "progress",
+    "started_at",
+    "ended_at",
+    "attempts",
+    "reused",
+    "seconds",
+    "peak_rss_bytes",
+    "workers",
+)
+
+
+@router.get(
+    "/stages",
+    response_model=StageTable,
+    summary="Every stage: state, counts, attempts, times, memory, workers",
+    responses={**CSV_RESPONSE, **responses(401, 404, 410, 503)},
+)
+def stages(request: Request, caller: CallerOf, inspection_id: str, format: Format = None) -> Response:
+    """Stages in the order of the method, as JSON or CSV."""
+    state = state_of(request)
+    services = state.services
+    find_inspection(services, inspection_id, caller.owner)
+    status = Statuses(services.db, services.graph).read(inspection_id)
+    if status is None:
+        raise not_found("inspection")
+    workers = _workers(services, inspection_id)
+    rows = [_detail(state, stage, workers.get(stage.name, [])).model_dump(mode="json") for stage in status.stages]
+    return table(request, format, _COLUMNS, rows)
+
+
+def _detail(state: State, stage: StageStatus, workers: list[str]) -> StageDetail:
+    more: dict[str, Any] = {
+        "ended_at": stage.ended_at,
+        "attempts": stage.attempts,
+        "reused": stage.reused,
+        "seconds": stage.seconds,
+        "peak_rss_bytes": stage.peak_rss_bytes,
+        "workers": workers,
+    }
+    return StageDetail.model_validate({**state.resources.stage(stage).model_dump(), **more})
+
+
+def _workers(services: Services, inspection_id: str) -> dict[str, list[str]]:
+    """Who held a lease, by stage."""
+    query = select(Attempt.key, Attempt.owner).where(Attempt.inspection_id == inspection_id).distinct()
+    found: dict[str, set[str]] = defaultdict(set)
+    with services.db.read() as session:
+        for key, owner in session.execute(query):
+            found[key.split("/", 1)[0]].add(owner)
+    return {stage: sorted(owners) for stage, owners in found.items()}

@@ -1,0 +1,189 @@
+"""Resumable uploads: tus 1.0.0 with creation and termination (https://tus.io/protocols/resumable-upload)."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from api.auth import CallerOf
+from api.finding import is_id
+from api.limits import require_space
+from api.problems import Refused, not_found, responses
+from api.receiving import receive_patch
+from api.state import state_of
+from store.upload_file import UploadFile
+from store.uploads import UploadView
+
+VERSION = "1.0.0"
+_CONTENT_TYPE = "application/offset+octet-stream"
+_MAX_METADATA = 8192
+_LARGEST = 1 << 62
+
+
+def speaks_tus(
+    request: Request,
+    tus_resumable: Annotated[
+        str | None, Header(description="version of the protocol: 1.0.0", examples=[VERSION])
+    ] = None,
+) -> None:
+    """412 unless the client speaks our version; nothing of the request is processed then."""
+    if tus_resumable != VERSION:
+        detail = f"this server speaks tus {VERSION}; say so in the header Tus-Resumable"
+        raise Refused(HTTPStatus.PRECONDITION_FAILED, "tus_version", detail, headers={"Tus-Version": VERSION})
+
+
+router = APIRouter(prefix="/v1/uploads", tags=["uploads"])
+_TUS = [Depends(speaks_tus)]
+_EXAMPLE: dict[str, Any] = {"headers": {"Upload-Offset": {"schema": {"type": "integer"}, "example": 5242880}}}
+
+
+@router.options("", status_code=204, summary="What this server can do")
+@router.options("/{upload_id}", status_code=204, summary="What this server can do", include_in_schema=False)
+def capabilities(request: Request) -> Response:
+    """Version, extensions and the largest upload."""
+    return _answer(
+        HTTPStatus.NO_CONTENT,
+        {
+            "Tus-Version": VERSION,
+            "Tus-Extension": "creation,termination",
+            "Tus-Max-Size": str(state_of(request).services.settings.max_upload_bytes),
+        },
+    )
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Begin an upload",
+    dependencies=_TUS,
+    responses={
+        201: {"description": "made; `Location` is where to send the bytes"},
+        **responses(400, 401, 412, 413, 507),
+    },
+)
+def create(
+    request: Request,
+    caller: CallerOf,
+    upload_length: Annotated[str | None, Header(description="size of the file in bytes", examples=["13107200"])] = None,
+    upload_metadata: Annotated[
+        str | None, Header(description="`name base64,name base64`", examples=["filename dHVyYmluZS5tcDQ="])
+    ] = None,
+) -> Response:
+    """Make an upload of a known size; 413 when it is larger than the server takes, 507 when the disk is."""
+    services = state_of(request).services
+    length = _number(upload_length, "Upload-Length")
+    if length > services.settings.max_upload_bytes:
+        detail = f"at most {services.settings.max_upload_bytes} bytes are taken"
+        raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "too_large", detail, where="Upload-Length")
+    metadata = _metadata(upload_metadata or "")
+    require_space(services, length)
+    upload = services.uploads.create(caller.owner, length, metadata)
+    return _answer(HTTPStatus.CREATED, {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": "0"})
+
+
+@router.head(
+    "/{upload_id}",
+    summary="How much has arrived",
+    dependencies=_TUS,
+    responses={200: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE}, **responses(401, 404, 410, 412)},
+)
+def offset(request: Request, caller: CallerOf, upload_id: str) -> Response:
+    """The offset to go on from: what was committed and is on disk."""
+    upload = _find(request, upload_id, caller.owner)
+    headers = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.length), "Cache-Control": "no-store"}
+    if upload.metadata:
+        headers["Upload-Metadata"] = _encoded(upload.metadata)
+    return _answer(HTTPStatus.OK, headers)
+
+
+@router.patch(
+    "/{upload_id}",
+    status_code=204,
+    summary="Send bytes",
+    dependencies=_TUS,
+    responses={
+        204: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE},
+        **responses(400, 401, 404, 409, 410, 412, 413, 415, 423, 507),
+    },
+    openapi_extra={"requestBody": {"content": {_CONTENT_TYPE: {"schema": {"type": "string", "format": "binary"}}}}},
+)
+async def send(
+    request: Request,
+    caller: CallerOf,
+    upload_id: str,
+    upload_offset: Annotated[str | None, Header(description="where these bytes begin", examples=["0"])] = None,
+) -> Response:
+    """Append at the offset. What arrived of a request that was cut off is kept."""
+    if request.headers.get("content-type", "").split(";")[0].strip().lower() != _CONTENT_TYPE:
+        detail = f"the content type must be {_CONTENT_TYPE}"
+        raise Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "content_type", detail, where="Content-Type")
+    declared = _number(upload_offset, "Upload-Offset")
+    upload = await run_in_threadpool(_find, request, upload_id, caller.owner)
+    reached = await receive_patch(request, state_of(request), upload, declared)
+    return _answer(HTTPStatus.NO_CONTENT, {"Upload-Offset": str(reached)})
+
+
+@router.delete(
+    "/{upload_id}",
+    status_code=204,
+    summary="Give an upload up",
+    dependencies=_TUS,
+    responses=responses(401, 404, 410, 412, 423),
+)
+def terminate(request: Request, caller: CallerOf, upload_id: str) -> Response:
+    """Remove an upload and its bytes; inspections that were made from it keep theirs."""
+    state = state_of(request)
+    upload = _find(request, upload_id, caller.owner)
+    uploads = state.services.uploads
+    with UploadFile(uploads.path(upload.id), state.digests):  # 423 while somebody writes
+        uploads.remove(upload.id)
+    return _answer(HTTPStatus.NO_CONTENT, {})
+
+
+def _find(request: Request, upload_id: str, owner: str) -> UploadView:
+    if not is_id(upload_id):
+        raise not_found("upload")
+    upload = state_of(request).services.uploads.find(upload_id, owner)
+    if upload is None:
+        raise not_found("upload")
+    if upload.removed:
+        raise Refused(HTTPStatus.GONE, "gone", "this upload was removed")
+    return upload
+
+
+def _number(text: str | None, header: str) -> int:
+    if text is None or not (text.isascii() and text.isdigit() and len(text) < 20) or int(text) > _LARGEST:
+        raise Refused(HTTPStatus.BAD_REQUEST, "bad_header", f"{header} must be a whole number of bytes", where=header)
+    return int(text)
+
+
+def _metadata(text: str) -> dict[str, str]:
+    """``key base64,key base64`` as texts; 400 for what is not of this form."""
+    found: dict[str, str] = {}
+    try:
+        if len(text) > _MAX_METADATA or not text.isascii():
+            raise ValueError("too long")
+        for pair in filter(None, (part.strip() for part in text.split(","))):
+            key, _, value = pair.partition(" ")
+            if not key or key in found:
+                raise ValueError(key)
+            found[key] = base64.b64decode(value, validate=True).decode("utf-8", "replace")
+    except (ValueError, binascii.Error):
+        detail = "Upload-Metadata must be `key base64value` pairs, separated by commas"
+        raise Refused(HTTPStatus.BAD_REQUEST, "bad_header", detail, where="Upload-Metadata") from None
+    return found
+
+
+def _encoded(metadata: Mapping[str, Any]) -> str:
+    pairs = ((key, base64.b64encode(str(value).encode()).decode()) for key, value in metadata.items())
+    return ",".join(f"{key} {value}".rstrip() for key, value in pairs)
+
+
+def _answer(status: HTTPStatus, headers: Mapping[str, str]) -> Response:
+    return Response(status_code=status, headers={"Tus-Resumable": VERSION, **headers})

@@ -1,0 +1,106 @@
+"""What can be known to be wrong within seconds, before anything is computed.
+
+`python -m core.intake` does the same in a process of its own with limits, because a decoder that meets a
+hostile file may take any memory or time, or crash: the question comes as JSON on stdin, the answer leaves
+as JSON on stdout.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import resource
+import signal
+import sys
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from core.annotations.parse import load_annotations
+from core.errors import BadInput, BladeAtlasError
+from core.roi import crop_of
+from core.settings import Settings
+from core.settings.groups import RoiSettings
+from core.video.decode import VideoReader
+
+_PR_SET_PDEATHSIG = 1
+
+
+def check_input(video: Path, annotations: Path | None, settings: Settings) -> None:
+    """Refuse input that no run can use; `BadInput` names what is wrong and where.
+
+    The first two frames are decoded, the annotations are read in full. What only a full pass can find
+    (damage further on, an interval outside the video) the stages say.
+    """
+    check_video(video)
+    if annotations is not None:
+        load_annotations(annotations)
+    check_roi(settings)
+
+
+def check_video(video: Path) -> dict[str, Any]:
+    """Size and codec of a video; `BadInput` unless the file is one whose first frames decode."""
+    with VideoReader(video) as reader:
+        shapes = [frame.rgb().shape for frame in islice(reader.frames(), 2)]
+        codec, declared = reader.codec, reader.declared_frames
+    if not shapes:
+        raise BadInput(f"the video '{video.name}' holds no frame that decodes", code="no_frames", where="video")
+    return {"width": shapes[0][1], "height": shapes[0][0], "codec": codec, "declared_frames": declared}
+
+
+def check_roi(settings: Settings) -> None:
+    """`BadInput` for a region of interest that holds nothing."""
+    roi = settings.roi
+    if not (roi.x0 < roi.x1 and roi.y0 < roi.y1):
+        raise BadInput(
+            f"the region of interest {roi.x0},{roi.y0},{roi.x1},{roi.y1} is empty", code="empty_roi", where="roi"
+        )
+
+
+def answer(question: dict[str, Any]) -> dict[str, Any]:
+    """Check what a question names.
+
+    Args:
+        question: ``video`` and optionally ``annotations`` (paths), ``roi`` (shares).
+
+    Returns:
+        ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
+    """
+    try:
+        found = check_video(Path(question["video"]))
+        crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
+        path = question.get("annotations")
+        annotations = load_annotations(Path(path) if path else None)
+    except BladeAtlasError as error:
+        return {"error": error.to_dict()}
+    except MemoryError:
+        return {"error": BadInput("the input needs more memory than it may take", code="too_complex").to_dict()}
+    return {"video": found, "n_detections": len(annotations.detections)}
+
+
+def limit_process(parent: int, memory_bytes: int, seconds: float) -> None:
+    """Hold this process to its limits: address space, processor time, no file written, no life after `parent`."""
+    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
+    if os.getppid() != parent:
+        os._exit(1)
+    processor_s = max(1, int(seconds))
+    for what, limit in (
+        (resource.RLIMIT_AS, memory_bytes),
+        (resource.RLIMIT_CPU, processor_s),
+        (resource.RLIMIT_FSIZE, 0),
+        (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_NOFILE, 64),
+    ):
+        resource.setrlimit(what, (limit, limit))
+
+
+def main() -> None:
+    """Answer one question."""
+    question = json.load(sys.stdin)
+    limit_process(int(question["parent"]), int(question["memory_bytes"]), float(question["seconds"]))
+    json.dump(answer(question), sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

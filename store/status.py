@@ -1,0 +1,217 @@
+"""An inspection as it is shown: its state, its stages, how far it is. One cheap read, asked again and again."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, and_, case, func, or_, select, update
+from sqlalchemy.orm import Session
+
+from core.report.summary import stage_state
+from store.db import Database
+from store.graph import CORE_GRAPH, Graph
+from store.leasing import changed
+from store.models import ACTIVE_INSPECTION, OVER_TASK, CaseRow, Inspection, Task
+from store.progress import StageCount, plan_share
+
+PUBLISH = "publish"
+"""Name of what happens after the last stage: the files of the contract are put into the artifact store."""
+_ALMOST = 0.995
+"""Shown at most until the result can be fetched."""
+
+
+@dataclass(frozen=True)
+class StageStatus:
+    """One stage, summed over its tasks."""
+
+    name: str
+    state: str
+    """waiting, running, succeeded, failed, skipped or cancelled."""
+    count: StageCount
+    attempts: int
+    reused: int
+    started_at: datetime | None
+    ended_at: datetime | None
+    seconds: float
+    """Summed over tasks, whenever they were computed."""
+    peak_rss_bytes: int | None
+    """Largest of one task."""
+
+
+@dataclass(frozen=True)
+class InspectionStatus:
+    """An inspection with everything that its resource says and the database knows."""
+
+    row: Inspection
+    """Detached; its columns are loaded."""
+    state: str
+    """As shown: an ended plan whose files are not published yet still runs."""
+    stage: str | None
+    """Where it is; None when it is over."""
+    stages: tuple[StageStatus, ...]
+    """Every stage of the graph, in its order."""
+    progress: float
+    queue_position: int | None
+    """1 = next; None when it is not queued."""
+    selected_case: str | None
+
+    @property
+    def active(self) -> bool:
+        """True while something may still change by itself."""
+        return self.state in ACTIVE_INSPECTION
+
+
+def shown_state(row: Inspection) -> str:
+    """State as others see it; see `shown_state_column` for the same in SQL."""
+    if row.state in ACTIVE_INSPECTION or row.published >= row.attempt:
+        return row.state
+    return "cancelling" if row.state == "cancelled" else "running"
+
+
+def shown_state_column() -> ColumnElement[str]:
+    """`shown_state` as an expression."""
+    settled = or_(Inspection.state.in_(ACTIVE_INSPECTION), Inspection.published >= Inspection.attempt)
+    return case((settled, Inspection.state), (Inspection.state == "cancelled", "cancelling"), else_="running")
+
+
+@dataclass(frozen=True)
+class Statuses:
+    """Reads what inspections look like."""
+
+    db: Database
+    graph: Graph = CORE_GRAPH
+
+    def read(self, inspection_id: str) -> InspectionStatus | None:
+        """One inspection, deleted ones included; None when there is none."""
+        with self.db.read() as session:
+            row = session.get(Inspection, inspection_id)
+            if row is None:
+                return None
+            status = self._status(session, row, _counted(session, [row.id]).get(row.id, {}))
+        self._remember(status)
+        return status
+
+    def read_many(self, rows: Sequence[Inspection]) -> list[InspectionStatus]:
+        """The same for a page of rows, with one query for all their stages."""
+        with self.db.read() as session:
+            counted = _counted(session, [row.id for row in rows])
+            return [self._status(session, row, counted.get(row.id, {})) for row in rows]
+
+    def _status(self, session: Session, row: Inspection, groups: Mapping[str, Sequence[Any]]) -> InspectionStatus:
+        state = shown_state(row)
+        over = row.state not in ACTIVE_INSPECTION
+        stages = tuple(_stage(name, groups.get(name, ()), over) for name in self.graph.stages)
+        return InspectionStatus(
+            row=row,
+            state=state,
+            stage=_current(stages, state, over),
+            stages=stages,
+            progress=self._progress(row, state, stages),
+            queue_position=_position(session, row) if state == "queued" else None,
+            selected_case=_selected(session, row.id) if state not in ACTIVE_INSPECTION else None,
+        )
+
+    def _progress(self, row: Inspection, state: str, stages: Iterable[StageStatus]) -> float:
+        if state == "succeeded":
+            return 1.0
+        share = plan_share(self.graph, {stage.name: stage.count for stage in stages if stage.count.total})
+        return max(row.progress, min(share, _ALMOST))
+
+    def _remember(self, status: InspectionStatus) -> None:
+        """Write down the highest share that was shown, so that no other process shows less."""
+        if status.progress <= status.row.progress:
+            return
+        where = (
+            Inspection.id == status.row.id,
+            Inspection.attempt == status.row.attempt,
+            Inspection.progress < status.progress,
+        )
+        with self.db.write() as session:
+            changed(session, update(Inspection).where(*where).values(progress=status.progress))
+
+
+def _counted(session: Session, inspection_ids: Sequence[str]) -> dict[str, dict[str, list[Any]]]:
+    """Tasks by inspection and stage, one entry per state."""
+    query = (
+        select(
+            Task.inspection_id,
+            Task.stage,
+            Task.state,
+            func.count().label("n"),
+            func.sum(Task.progress).label("progress"),
+            func.sum(Task.attempt).label("attempts"),
+            func.sum(case((Task.reused, 1), else_=0)).label("reused"),
+            func.min(Task.started_at).label("started_at"),
+            func.max(Task.ended_at).label("ended_at"),
+            func.sum(Task.seconds).label("seconds"),
+            func.max(Task.peak_rss_bytes).label("peak_rss_bytes"),
+        )
+        .where(Task.inspection_id.in_(inspection_ids))
+        .group_by(Task.inspection_id, Task.stage, Task.state)
+    )
+    found: dict[str, dict[str, list[Any]]] = defaultdict(lambda: defaultdict(list))
+    for group in session.execute(query):
+        found[group.inspection_id][group.stage].append(group)
+    return found
+
+
+def _stage(name: str, groups: Sequence[Any], over: bool) -> StageStatus:
+    by_state = {group.state: group.n for group in groups}
+    started = [group.started_at for group in groups if group.started_at]
+    ended = [group.ended_at for group in groups if group.ended_at]
+    peaks = [group.peak_rss_bytes for group in groups if group.peak_rss_bytes is not None]
+    count = StageCount(
+        total=sum(by_state.values()),
+        over=sum(n for state, n in by_state.items() if state in OVER_TASK),
+        running=float(sum(group.progress or 0.0 for group in groups if group.state == "leased")),
+    )
+    state = _stage_state(by_state, count, over)
+    return StageStatus(
+        name=name,
+        state=state,
+        count=count,
+        attempts=sum(group.attempts or 0 for group in groups),
+        reused=sum(group.reused or 0 for group in groups),
+        started_at=min(started, default=None),
+        ended_at=max(ended, default=None) if count.total and count.over == count.total else None,
+        seconds=round(float(sum(group.seconds or 0.0 for group in groups)), 3),
+        peak_rss_bytes=max(peaks, default=None),
+    )
+
+
+def _stage_state(by_state: Mapping[str, int], count: StageCount, over: bool) -> str:
+    if count.over < count.total:
+        return "running" if "leased" in by_state or count.over else "waiting"
+    if not count.total:
+        return "skipped" if over else "waiting"
+    return stage_state(list(by_state))
+
+
+def _current(stages: Sequence[StageStatus], state: str, over: bool) -> str | None:
+    if state not in ACTIVE_INSPECTION:
+        return None
+    if over:
+        return PUBLISH
+    running = [stage.name for stage in stages if stage.state == "running"]
+    waiting = [stage.name for stage in stages if stage.state == "waiting"]
+    return next(iter([*running, *waiting]), None)
+
+
+def _position(session: Session, row: Inspection) -> int:
+    """Place among the queued: the plan hands out work in order of creation."""
+    earlier = or_(
+        Inspection.created_at < row.created_at,
+        and_(Inspection.created_at == row.created_at, Inspection.id < row.id),
+    )
+    ahead = select(func.count()).select_from(Inspection).where(Inspection.state == "queued", earlier)
+    return int(session.scalar(ahead) or 0) + 1
+
+
+def _selected(session: Session, inspection_id: str) -> str | None:
+    query = select(CaseRow.name).where(CaseRow.inspection_id == inspection_id, CaseRow.selected == 1).limit(1)
+    name: str | None = session.scalar(query)
+    return name

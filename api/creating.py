@@ -27,7 +27,11 @@ from core.fingerprint import digest_of_file
 MAX_PARAMETERS_BYTES = 1 << 20
 MAX_INLINE_BYTES = 8 << 20
 """Largest JSON body. Annotations that are larger come as an upload or in a form: parsed JSON takes much memory."""
-_PARAMETERS_EXAMPLE = {"preset": "draft", "options": {"matching.window": 8}, "label": "engine 4, stage 2"}
+_PARAMETERS_EXAMPLE: dict[str, Any] = {
+    "preset": "draft",
+    "options": {"matching.window": 8},
+    "label": "engine 4, stage 2",
+}
 
 
 class CreateBody(BaseModel):

@@ -24,6 +24,8 @@ from store.disk import NO_SPACE
 if TYPE_CHECKING:
     from hashlib import _Hash
 
+    from python_multipart.multipart import MultipartCallbacks
+
 _DISPOSITION = b"content-disposition"
 _BOUNDARY = re.compile(rb"[0-9A-Za-z'()+_,./:=? -]{1,70}")
 
@@ -113,7 +115,7 @@ class FormReader:
             # A finished part is written at once, so that memory holds one piece whatever the parts are.
             await part.flush(at_least if part is self._current else 0)
 
-    def _callbacks(self) -> dict[str, object]:
+    def _callbacks(self) -> MultipartCallbacks:
         return {
             "on_part_begin": self._begin,
             "on_header_field": self._header_field,

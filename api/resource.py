@@ -114,7 +114,7 @@ class Resources:
         workers = self.services.settings.worker_count()
         return StageItem(
             name=stage.name,
-            state=stage.state,  # type: ignore[arg-type]  # pydantic checks that it is one of the known
+            state=stage.state,
             done=stage.count.over,
             total=stage.count.total,
             progress=round(stage.count.share, 4),

@@ -45,7 +45,7 @@ def list_inspections(db: Database, chosen: Filter, limit: int, cursor: str | Non
         same = and_(Inspection.created_at == created_at, Inspection.id < inspection_id)
         query = query.where(or_(Inspection.created_at < created_at, same))
     with db.read() as session:
-        rows = session.scalars(query).all()
+        rows: Sequence[Inspection] = session.scalars(query).all()
     more = len(rows) > limit
     return Page(rows[:limit], _encoded(rows[limit - 1]) if more else None)
 
@@ -57,7 +57,7 @@ def count_active(db: Database) -> int:
         return int(session.scalar(query) or 0)
 
 
-def _chosen(chosen: Filter) -> Select[tuple[Inspection]]:
+def _chosen(chosen: Filter) -> Select[Inspection]:
     query = select(Inspection).where(Inspection.owner == chosen.owner, Inspection.deleted_at.is_(None))
     if chosen.states:
         query = query.where(shown_state_column().in_(chosen.states))

@@ -52,8 +52,8 @@ def learn_timings(db: Database) -> Timings:
     per_task, per_plan = defaultdict(list), defaultdict(list)
     with db.read() as session:
         for stage, n, seconds in session.execute(query):
-            per_task[stage].append(float(seconds) / n)
-            per_plan[stage].append(float(seconds))
+            per_task[stage].append(float(seconds or 0.0) / n)
+            per_plan[stage].append(float(seconds or 0.0))
     return {stage: StageTiming(_interval(per_task[stage]), _interval(per_plan[stage])) for stage in per_task}
 
 

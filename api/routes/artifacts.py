@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from http import HTTPStatus
 from pathlib import PurePosixPath
-from typing import Annotated
+from typing import Annotated, Any
 from urllib.parse import quote
 
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -28,7 +28,7 @@ from store.artifacts import ArtifactStore
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["results"])
 
 _CHUNK = 1 << 20
-_EXAMPLE = {
+_EXAMPLE: dict[str, Any] = {
     "path": "mapping/mesh_defects.ply",
     "size": 48120311,
     "sha256": "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",

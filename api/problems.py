@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
-import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
@@ -16,6 +15,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
 from core.errors import BadInput, BladeAtlasError, Cancelled, DiskFull, NoReconstruction, ResourceError
+from store.json_log import logger
 from store.upload_file import UploadLocked
 
 MEDIA_TYPE = "application/problem+json"
@@ -36,7 +36,7 @@ _RETRYABLE = {
 }
 _UNREACHABLE = "the database does not answer"
 
-log = structlog.get_logger("api")
+log = logger("bladeatlas.api")
 
 
 class FieldError(BaseModel):

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from store.artifacts import ArtifactStore
-from store.db import Database, open_sqlite, upgrade
-from store.graph import CORE_GRAPH, Graph
+from store.db import Database
+from store.graph import CORE_GRAPH, Graph, load_graph
 from store.inspections import Inspections
 from store.logs import InspectionLogs
+from store.opening import open_artifacts, open_database
 from store.plan import Plan
 from store.settings import DeploymentSettings
 from store.uploads import Uploads
@@ -46,33 +47,35 @@ class Services:
 
     @property
     def logs(self) -> InspectionLogs:
-        """Logs: local files beside a local store, objects beside a remote one."""
-        if self.settings.artifacts_url:
-            return InspectionLogs(self.artifacts)
-        return InspectionLogs(ArtifactStore(self.settings.folder("")))
+        """Logs, which lie beside the artifacts."""
+        return InspectionLogs(self.artifacts)
+
+
+def make_services(
+    settings: DeploymentSettings,
+    db: Database,
+    artifacts: ArtifactStore,
+    *,
+    wake: Callable[[str], None],
+    graph: Graph = CORE_GRAPH,
+) -> Services:
+    """Services over a database and an artifact store that are open already."""
+    settings.folder("uploads").mkdir(parents=True, exist_ok=True)
+    return Services(settings, db, artifacts, _results(settings), wake, graph)
 
 
 def services_from(settings: DeploymentSettings) -> Services:
-    """The services of a process that only answers requests; runners elsewhere find new work by themselves."""
-    settings.folder("uploads").mkdir(parents=True, exist_ok=True)
-    if settings.database_url:
-        upgrade(settings.database())
-        db = Database(settings.database())
-    else:
-        db = open_sqlite(settings.folder("bladeatlas.db"))
-    return Services(
-        settings=settings,
-        db=db,
-        artifacts=_store(settings, "artifacts"),
-        results=_store(settings, "results"),
-        wake=_nobody,
-    )
+    """Services from the environment: of a process that only answers requests, while runners elsewhere poll."""
+    db = open_database(settings)
+    return make_services(settings, db, open_artifacts(settings), wake=_nobody, graph=load_graph(settings.graph))
 
 
-def _store(settings: DeploymentSettings, name: str) -> ArtifactStore:
-    if settings.artifacts_url:
-        return ArtifactStore(f"{settings.artifacts_url.rstrip('/')}/{name}", **settings.artifacts_options)
-    return ArtifactStore(settings.folder(name))
+def _results(settings: DeploymentSettings) -> ArtifactStore:
+    """The part of the artifact store that holds results."""
+    root = settings.artifacts()
+    if isinstance(root, str):
+        return ArtifactStore(f"{root.rstrip('/')}/results", **settings.artifacts_options)
+    return ArtifactStore(root / "results")
 
 
 def _nobody(inspection_id: str) -> None:

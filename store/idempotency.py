@@ -7,17 +7,12 @@ and of two equal requests at once the database lets one through; the other finds
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import timedelta
 
-from sqlalchemy import CursorResult, delete
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
 from store.db import Database
 from store.models import IdempotencyKey
-
-KEEP = timedelta(hours=48)
-"""A key may be used anew after this."""
 
 
 class OtherBody(BadInput):
@@ -52,12 +47,3 @@ class IdempotencyKeys:
         row.created_at = self.db.now(session)
         session.add(row)
         session.flush()
-
-    def sweep(self) -> int:
-        """Forget old keys; returns how many."""
-        with self.db.write() as session:
-            done = session.execute(
-                delete(IdempotencyKey).where(IdempotencyKey.created_at < self.db.now(session) - KEEP)
-            )
-            assert isinstance(done, CursorResult)
-            return int(done.rowcount)

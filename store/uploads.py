@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import time
 import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -11,8 +9,7 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import select, update
-from sqlalchemy.orm import Session
+from sqlalchemy import update
 
 from store.db import Database
 from store.disk import sync_path
@@ -109,32 +106,6 @@ class Uploads:
             where = (Upload.id == upload_id, Upload.removed_at.is_(None))
             changed(session, update(Upload).where(*where).values(removed_at=self.db.now(session)))
         self.path(upload_id).unlink(missing_ok=True)
-
-    def sweep(self) -> int:
-        """Remove uploads that nobody used in time, and files that no row names; returns how many."""
-        with self.db.read() as session:
-            now = self.db.now(session)
-            late = session.scalars(select(Upload.id).where(Upload.removed_at.is_(None), Upload.expires_at < now)).all()
-        for upload_id in late:
-            self.remove(upload_id)
-        return len(late) + self._remove_orphans()
-
-    def _remove_orphans(self) -> int:
-        """Files of forms and of removed uploads that a crash left behind; old enough that nobody writes to them."""
-        if not self.folder.is_dir():
-            return 0
-        oldest = time.time() - self.keep_hours * 3600
-        with self.db.read() as session:
-            stale = [entry.name for entry in os.scandir(self.folder) if self._is_orphan(session, entry, oldest)]
-        for name in stale:
-            self.path(name).unlink(missing_ok=True)
-        return len(stale)
-
-    def _is_orphan(self, session: Session, entry: os.DirEntry[str], oldest: float) -> bool:
-        row = session.get(Upload, entry.name)
-        if row is not None:
-            return row.removed_at is not None
-        return entry.stat().st_mtime < oldest
 
 
 def _view(row: Upload) -> UploadView:

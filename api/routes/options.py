@@ -88,9 +88,8 @@ def _schema() -> dict[str, Any]:
 
 def _option_schema(info: Any) -> dict[str, Any]:
     """JSON Schema of one option: type, range, default, meaning, unit, source."""
-    adapter: TypeAdapter[Any] = TypeAdapter(Annotated[info.annotation, *info.metadata])
-    known = {"default": info.get_default(), "description": info.description, **(info.json_schema_extra or {})}
-    return {**adapter.json_schema(), **known}
+    adapter: TypeAdapter[Any] = TypeAdapter(Annotated[info.annotation, info])
+    return adapter.json_schema()
 
 
 @router.get("/presets", summary="Presets and the JSON Schema of settings")

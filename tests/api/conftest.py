@@ -18,11 +18,11 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from api.app import create_app
-from api.services import Services
+from api.services import Services, make_services
 from core.settings import make_settings
-from store.artifacts import ArtifactStore
-from store.db import Database, open_sqlite
+from store.db import Database
 from store.models import Artifact, Inspection
+from store.opening import open_artifacts, open_database
 from store.records import InputFiles
 from store.rows import replace_rows
 from store.settings import DeploymentSettings
@@ -103,16 +103,9 @@ class Backend:
 @pytest.fixture
 def backend(tmp_path: Path) -> Iterator[Backend]:
     settings = DeploymentSettings(data_dir=tmp_path / "data", reserve_bytes=0)
-    settings.folder("uploads").mkdir(parents=True)
     woken: list[str] = []
-    services = Services(
-        settings=settings,
-        db=open_sqlite(settings.folder("bladeatlas.db")),
-        artifacts=ArtifactStore(settings.folder("artifacts")),
-        results=ArtifactStore(settings.folder("results")),
-        wake=woken.append,
-        graph=GRAPH,
-    )
+    db, artifacts = open_database(settings), open_artifacts(settings)
+    services = make_services(settings, db, artifacts, wake=woken.append, graph=GRAPH)
     yield Backend(services, woken)
     services.db.close()
 

@@ -13,6 +13,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
+from api.app import create_app
 from store.models import Inspection
 from tests.api.conftest import ANNOTATIONS, TUS, VIDEO, Backend, client_of
 from tests.api.test_uploads import begin, patch
@@ -28,8 +29,8 @@ def rows(backend: Backend) -> list[Inspection]:
 def post(
     client: TestClient, video: bytes = SMALL, headers: dict[str, str] | None = None, **fields: Any
 ) -> httpx.Response:
-    files = {"video": ("../../evil.mp4", video, "application/octet-stream")}
-    files.update({name: (None, value) for name, value in fields.items()})  # type: ignore[misc]
+    files: dict[str, Any] = {"video": ("../../evil.mp4", video, "application/octet-stream")}
+    files.update({name: (None, value) for name, value in fields.items()})
     return client.post("/v1/inspections", files=files, headers=headers)
 
 
@@ -98,9 +99,7 @@ def test_a_key_has_one_effect(backend: Backend, client: TestClient) -> None:
 
 @pytest.mark.usefixtures("unprobed")
 def test_equal_requests_at_once_make_one_inspection(backend: Backend, serve: Any) -> None:
-    """Two processes, many threads: the database decides."""
-    from api.app import create_app
-
+    """Two applications that share nothing but the database."""
     addresses = [serve(create_app(backend.services)) for _ in range(2)]
 
     def ask(number: int) -> httpx.Response:
@@ -148,7 +147,7 @@ def test_wrong_parameters_are_named(
         (b"", None, "empty_file"),
         (SMALL, None, "not_a_video"),
         (b"#EXTM3U\n#EXTINF:1,\nfile:///etc/passwd\n", None, "not_a_video"),
-        (VIDEO.read_bytes()[:3000], None, "not_a_video"),
+        (VIDEO.read_bytes()[:3000], None, "no_frames"),
         (VIDEO.read_bytes(), b"{", "annotations_malformed"),
         (VIDEO.read_bytes(), b"[" * 1_000_000, "annotations_malformed"),
         (VIDEO.read_bytes(), b'{"1": {"detections": [{"label": "x", "bbox": [1, 1, 0, 0]}]}}', "box_inverted"),

@@ -195,7 +195,7 @@ def test_retry_computes_only_what_changed(backend: Backend, client: TestClient) 
 def test_retry_from_a_stage_makes_its_results_anew(backend: Backend, client: TestClient) -> None:
     one = backend.finished("one")
     results: ArtifactStore = backend.services.results
-    folder = backend.services.settings.folder("results")
+    folder = backend.services.settings.folder("artifacts") / "results"
     for task in backend.services.inspections.tasks(one):
         assert task.path is not None
         (folder / task.path).mkdir(parents=True)

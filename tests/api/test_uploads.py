@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -151,21 +152,22 @@ def test_two_requests_cannot_write_to_one_upload(backend: Backend, address: str)
         url = begin(client, 1000)
         sending, go_on = threading.Event(), threading.Event()
 
-        def slowly() -> object:
+        def slowly() -> Iterator[bytes]:
             yield b"a" * 400
             sending.set()
             go_on.wait(10)
             yield b"a" * 600
 
         def send() -> None:
-            answers.append(httpx.patch(address + url, content=slowly(), headers=headers).status_code)  # type: ignore[arg-type]
+            answers.append(httpx.patch(address + url, content=slowly(), headers=headers).status_code)
 
         answers: list[int] = []
         headers = {**TUS, **_BYTES, "Upload-Offset": "0"}
         thread = threading.Thread(target=send)
         thread.start()
         sending.wait(10)
-        wait_until(lambda: patch(client, url, 0, b"b" * 400).status_code == 423)
+        wait_until(lambda: patch(client, url, 7, b"").status_code == 423)
+        assert patch(client, url, 0, b"b" * 400).status_code == 423
         assert client.delete(url, headers=TUS).status_code == 423
         go_on.set()
         thread.join(10)
@@ -203,9 +205,10 @@ def test_a_killed_server_corrupts_nothing(tmp_path: Path, monkeypatch: pytest.Mo
             url = url or begin(client, len(data))
             offset = offset_of(client, url)
             stop_after = chance.randrange(2_000_000, 9_000_000)
+            headers = {**TUS, **_BYTES, "Upload-Offset": str(offset)}
+            body = _killing(data[offset:], stop_after, server)
             with pytest.raises(httpx.HTTPError):
-                headers = {**TUS, **_BYTES, "Upload-Offset": str(offset)}
-                client.patch(url, content=_killing(data[offset:], stop_after, server), headers=headers)
+                client.patch(url, content=body, headers=headers)
         server.wait()
     address, server = _start_server()
     try:
@@ -219,7 +222,7 @@ def test_a_killed_server_corrupts_nothing(tmp_path: Path, monkeypatch: pytest.Mo
     assert hashlib.sha256(kept.read_bytes()).digest() == hashlib.sha256(data).digest()
 
 
-def _killing(data: bytes, stop_after: int, server: subprocess.Popen[bytes]) -> object:
+def _killing(data: bytes, stop_after: int, server: subprocess.Popen[bytes]) -> Iterator[bytes]:
     for start in range(0, len(data), 100_000):
         if start > stop_after:
             server.send_signal(signal.SIGKILL)

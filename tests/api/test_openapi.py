@@ -1,0 +1,100 @@
+"""The document that clients are made from, and that the service keeps to it whatever it is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import schemathesis
+from fastapi.testclient import TestClient
+from hypothesis import HealthCheck, settings
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from api.app import create_app
+from api.problems import MEDIA_TYPE
+from tests.api.conftest import Backend
+from tests.api.test_results import ROWS
+
+_CHECKS = (not_a_server_error, content_type_conformance, response_schema_conformance, status_code_conformance)
+_METHODS = ("get", "post", "patch", "delete", "head", "options")
+
+
+def operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    for path, methods in document["paths"].items():
+        for method, operation in methods.items():
+            assert method in _METHODS
+            yield path, method, operation
+
+
+@pytest.fixture
+def document(client: TestClient) -> dict[str, Any]:
+    found: dict[str, Any] = client.get("/openapi.json").json()
+    return found
+
+
+def test_every_route_is_described(document: dict[str, Any]) -> None:
+    assert document["openapi"].startswith("3.1")
+    names = [operation["operationId"] for _, _, operation in operations(document)]
+    assert len(names) == len(set(names))
+    for path, method, operation in operations(document):
+        assert operation["summary"], (path, method)
+        default = operation["responses"]["default"]["content"]
+        assert default == {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+        for status, answer in operation["responses"].items():
+            if status.startswith(("4", "5")):
+                assert set(answer["content"]) == {MEDIA_TYPE}, (path, status)
+        if path.startswith("/v1/") or path == "/metrics":
+            assert operation["security"] == [{"HTTPBearer": []}], path
+
+
+def test_every_answer_has_an_example(document: dict[str, Any]) -> None:
+    schemas = document["components"]["schemas"]
+    for path, method, operation in operations(document):
+        for status, answer in operation["responses"].items():
+            schema = answer.get("content", {}).get("application/json", {}).get("schema")
+            if schema is None or not status.startswith("2"):
+                continue
+            reference = schema.get("$ref") or schema.get("items", {}).get("$ref") or ""
+            model = schemas[reference.rsplit("/", 1)[-1]]
+            if "items" in model:
+                model = schemas[model["items"]["$ref"].rsplit("/", 1)[-1]]
+            has_example = "example" in model or all("default" in p or "const" in p for p in model["properties"].values())
+            assert has_example, (path, method)
+
+
+def test_references_resolve(document: dict[str, Any]) -> None:
+    def walk(value: Any) -> Iterator[str]:
+        if isinstance(value, dict):
+            if isinstance(value.get("$ref"), str):
+                yield value["$ref"]
+            for inner in value.values():
+                yield from walk(inner)
+        elif isinstance(value, list):
+            for inner in value:
+                yield from walk(inner)
+
+    for reference in set(walk(document)):
+        assert reference.removeprefix("#/components/schemas/") in document["components"]["schemas"]
+
+
+@pytest.mark.usefixtures("unprobed")
+def test_whatever_is_asked_the_answer_keeps_to_the_document(backend: Backend) -> None:
+    """Generated requests, valid and not, with an id that exists in place of a generated one."""
+    app = create_app(backend.services)
+    one = backend.finished("one", {"quality.json": b'{"verdict": "ok", "flags": []}'}, **ROWS)
+    schema = schemathesis.openapi.from_asgi("/openapi.json", app)
+
+    for result in schema.get_all_operations():
+        operation = result.ok()
+
+        @operation.as_strategy_test if hasattr(operation, "as_strategy_test") else (lambda f: f)
+        def check() -> None:
+            return None
+
+    assert one

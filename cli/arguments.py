@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from cli.remote_arguments import add_remote_commands
 from core.settings import PRESET_NAMES
 
 _EXIT_CODES = (
@@ -22,6 +23,7 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _run(commands)
+    add_remote_commands(commands, _EXIT_CODES)
     probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
     probe.add_argument("video", type=Path, metavar="VIDEO")
     _json(probe)

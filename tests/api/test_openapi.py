@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
 import schemathesis
+from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, settings
 from schemathesis.checks import not_a_server_error
@@ -18,6 +20,7 @@ from schemathesis.specs.openapi.checks import (
 
 from api.app import create_app
 from api.problems import MEDIA_TYPE
+from store.keys import Keys
 from tests.api.conftest import Backend
 from tests.api.test_results import ROWS
 
@@ -64,7 +67,9 @@ def test_every_answer_has_an_example(document: dict[str, Any]) -> None:
             model = schemas[reference.rsplit("/", 1)[-1]]
             if "items" in model:
                 model = schemas[model["items"]["$ref"].rsplit("/", 1)[-1]]
-            has_example = "example" in model or all("default" in p or "const" in p for p in model["properties"].values())
+            has_example = "example" in model or all(
+                "default" in p or "const" in p for p in model["properties"].values()
+            )
             assert has_example, (path, method)
 
 
@@ -83,18 +88,36 @@ def test_references_resolve(document: dict[str, Any]) -> None:
         assert reference.removeprefix("#/components/schemas/") in document["components"]["schemas"]
 
 
-@pytest.mark.usefixtures("unprobed")
-def test_whatever_is_asked_the_answer_keeps_to_the_document(backend: Backend) -> None:
-    """Generated requests, valid and not, with an id that exists in place of a generated one."""
-    app = create_app(backend.services)
-    one = backend.finished("one", {"quality.json": b'{"verdict": "ok", "flags": []}'}, **ROWS)
-    schema = schemathesis.openapi.from_asgi("/openapi.json", app)
+@dataclass
+class Asked:
+    """An application, an inspection in it, and a key that may see it."""
 
-    for result in schema.get_all_operations():
-        operation = result.ok()
+    app: FastAPI
+    inspection_id: str
+    headers: dict[str, str]
 
-        @operation.as_strategy_test if hasattr(operation, "as_strategy_test") else (lambda f: f)
-        def check() -> None:
-            return None
 
-    assert one
+@pytest.fixture
+def asked(backend: Backend, unprobed: None) -> Asked:
+    view, key = Keys(backend.db).create("generated requests")
+    files = {"quality.json": b'{"verdict": "ok", "flags": []}', "mapping/timeline.csv": b"event_id\r\n"}
+    one = backend.finished("one", files, owner=view.id, **ROWS)
+    return Asked(create_app(backend.services), one, {"Authorization": f"Bearer {key}"})
+
+
+@pytest.fixture
+def described(asked: Asked) -> Any:
+    return schemathesis.openapi.from_asgi("/openapi.json", asked.app)
+
+
+generated = schemathesis.pytest.from_fixture("described")
+
+
+@generated.parametrize()
+@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+def test_whatever_is_asked_the_answer_keeps_to_the_document(case: schemathesis.Case, asked: Asked) -> None:
+    """Generated requests; half of them about an inspection that there is."""
+    generated_id = str(case.path_parameters.get("inspection_id", "x"))
+    if len(generated_id) % 2 == 0:
+        case.path_parameters["inspection_id"] = asked.inspection_id
+    case.call_and_validate(checks=list(_CHECKS), headers=asked.headers)

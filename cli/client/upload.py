@@ -1,0 +1,100 @@
+"""Sending a file with tus 1.0.0, a piece in memory at a time, on from where an earlier call was cut off."""
+
+from __future__ import annotations
+
+import base64
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+
+from cli.client.errors import raise_problem
+from cli.client.transfers import OnBytes, Transfers
+from core.errors import ResourceError
+from core.files import require_file
+
+_TUS = {"Tus-Resumable": "1.0.0"}
+_PIECE = 1 << 20
+_TRIES = 8
+_PAUSE_S = 0.5
+_LONGEST_PAUSE_S = 10.0
+_PASSING = (409, 423, 503)
+"""Answers that another look at the offset may mend."""
+
+
+def upload_file(http: httpx.Client, server: str, path: Path, transfers: Transfers, on_bytes: OnBytes) -> str:
+    """Send a file; returns the upload's id.
+
+    Raises:
+        BadInput: the file is missing or empty, or the server does not take it.
+        ResourceError: the server stays away; the next call goes on from there.
+    """
+    size = require_file(path, "input")
+    failures, reached = 0, -1
+    while True:
+        try:
+            url = _known(http, server, path, transfers) or _created(http, server, path, size, transfers)
+            offset = _offset(http, url)
+            failures, reached = (0 if offset > reached else failures), max(offset, reached)
+            if offset == size:
+                return url.rsplit("/", 1)[-1]
+            _send(http, url, path, offset, size, on_bytes)
+        except (httpx.TransportError, ResourceError) as error:
+            failures += 1
+            if failures >= _TRIES:
+                message = f"the upload of '{path.name}' was cut off: {error}; the same command goes on from there"
+                raise ResourceError(message, code="upload_cut_off") from None
+            time.sleep(min(_LONGEST_PAUSE_S, _PAUSE_S * 2**failures))
+
+
+def _known(http: httpx.Client, server: str, path: Path, transfers: Transfers) -> str | None:
+    """An earlier call's upload of this file, unless the server has removed it."""
+    url = transfers.find(server, path)
+    if url is None:
+        return None
+    response = http.head(url, headers=_TUS)
+    if response.status_code in (404, 410):
+        transfers.forget(server, path)
+        return None
+    raise_problem(response)
+    return url
+
+
+def _created(http: httpx.Client, server: str, path: Path, size: int, transfers: Transfers) -> str:
+    name = base64.b64encode(path.name.encode()).decode()
+    headers = {**_TUS, "Upload-Length": str(size), "Upload-Metadata": f"filename {name}"}
+    response = http.post("/v1/uploads", headers=headers)
+    raise_problem(response)
+    url = str(response.headers["Location"])
+    transfers.keep(server, path, url)
+    return url
+
+
+def _offset(http: httpx.Client, url: str) -> int:
+    response = http.head(url, headers=_TUS)
+    raise_problem(response)
+    return int(response.headers["Upload-Offset"])
+
+
+def _send(http: httpx.Client, url: str, path: Path, offset: int, size: int, on_bytes: OnBytes) -> None:
+    headers = {
+        **_TUS,
+        "Content-Type": "application/offset+octet-stream",
+        "Upload-Offset": str(offset),
+        "Content-Length": str(size - offset),
+    }
+    response = http.patch(url, content=_pieces(path, offset, size, on_bytes), headers=headers)
+    if response.status_code in _PASSING:
+        raise ResourceError(f"the server answered {response.status_code}", code="upload_busy")
+    raise_problem(response)
+
+
+def _pieces(path: Path, offset: int, size: int, on_bytes: OnBytes) -> Iterator[bytes]:
+    on_bytes(path.name, offset, size)
+    with path.open("rb") as stream:
+        stream.seek(offset)
+        while piece := stream.read(_PIECE):
+            yield piece
+            offset += len(piece)
+            on_bytes(path.name, offset, size)

@@ -1,0 +1,40 @@
+"""`bladeatlas keys`: make, list and revoke API keys, in the database of this machine's server."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import asdict
+from typing import Any
+
+from store.keys import Keys, KeyView
+from store.opening import open_database
+from store.settings import DeploymentSettings
+
+
+def command(parsed: argparse.Namespace) -> int:
+    """Do what was asked for; a new key is printed once and never again."""
+    database = open_database(DeploymentSettings())
+    try:
+        keys = Keys(database)
+        if parsed.action == "create":
+            view, key = keys.create(parsed.name)
+            print(json.dumps({**_record(view), "key": key}) if parsed.json else key)
+        elif parsed.action == "revoke":
+            keys.revoke(parsed.name)
+        else:
+            _list(keys.all(), parsed.json)
+    finally:
+        database.close()
+    return 0
+
+
+def _list(found: list[KeyView], as_json: bool) -> None:
+    for view in found:
+        state = "revoked" if view.revoked_at else "valid"
+        used = view.last_used_at.isoformat(timespec="seconds") if view.last_used_at else "never"
+        print(json.dumps(_record(view)) if as_json else f"{view.id}  {state}  last used {used}  {view.name}")
+
+
+def _record(view: KeyView) -> dict[str, Any]:
+    return {name: value.isoformat() if hasattr(value, "isoformat") else value for name, value in asdict(view).items()}

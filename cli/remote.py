@@ -1,0 +1,137 @@
+"""What the commands that talk to a server have in common."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, DownloadColumn, Progress, TaskID, TextColumn, TransferSpeedColumn
+
+from cli import exits
+from cli.client import Client, InspectionInfo
+from cli.progress import duration
+from core.errors import BadInput
+
+DEFAULT_SERVER = "http://127.0.0.1:8000"
+SERVER_VARIABLE = "BLADEATLAS_SERVER"
+KEY_VARIABLE = "BLADEATLAS_API_KEY"
+
+
+def client_of(parsed: argparse.Namespace) -> Client:
+    """The client that the arguments and the environment ask for."""
+    server = parsed.server or os.environ.get(SERVER_VARIABLE) or DEFAULT_SERVER
+    return Client(server, _key(parsed))
+
+
+def _key(parsed: argparse.Namespace) -> str | None:
+    """The API key, from a file or a variable: an argument could be read by everybody on the machine."""
+    if parsed.key_file is not None:
+        try:
+            return str(parsed.key_file.read_text(encoding="utf-8").strip())
+        except (OSError, UnicodeDecodeError) as error:
+            raise BadInput(f"cannot read the key file: {error}", where="--key-file") from None
+    if parsed.key_env is not None and parsed.key_env not in os.environ:
+        raise BadInput(f"there is no variable '{parsed.key_env}'", where="--key-env")
+    return os.environ.get(parsed.key_env or KEY_VARIABLE) or None
+
+
+def exit_code(inspection: InspectionInfo) -> int:
+    """The exit code of the contract for an inspection that is over."""
+    by_state = {"succeeded": exits.DONE, "partial": exits.PARTIAL, "cancelled": exits.INTERRUPTED}
+    if inspection.state in by_state:
+        return by_state[inspection.state]
+    code = (inspection.error or {}).get("code")
+    return {"bad_input": exits.BAD_INPUT, "no_reconstruction": exits.NO_RECONSTRUCTION}.get(str(code), exits.INTERNAL)
+
+
+def print_json(record: Mapping[str, Any]) -> None:
+    """One JSON object on one line."""
+    print(json.dumps(dict(record), allow_nan=False), flush=True)
+
+
+def line(inspection: InspectionInfo) -> str:
+    """An inspection in one line."""
+    parts = [inspection.id, inspection.state, f"{inspection.progress:.0%}"]
+    if inspection.stage:
+        parts.append(inspection.stage)
+    if inspection.eta_s:
+        parts.append(f"({duration(inspection.eta_s[0])} to {duration(inspection.eta_s[1])} left)")
+    if inspection.label:
+        parts.append(inspection.label)
+    if inspection.error:
+        parts.append(f"{inspection.error.get('code')}: {inspection.error.get('detail')}")
+    return "  ".join(parts)
+
+
+def follow(client: Client, inspection: InspectionInfo, as_json: bool) -> InspectionInfo:
+    """Show an inspection until it is over; JSON lines, a bar on a terminal, or a line per stage in a log."""
+    last, shown = inspection, ""
+    with _bar() as bar:
+        for last in client.watch(inspection.id):
+            if as_json:
+                print_json(last.raw)
+            elif bar is not None:
+                bar.show(last.stage or last.state, round(last.progress * 1000), 1000)
+            elif f"{last.state} {last.stage}" != shown:
+                shown = f"{last.state} {last.stage}"
+                print(line(last), file=sys.stderr, flush=True)
+    return last
+
+
+class Bars:
+    """A bar per file or inspection on standard error."""
+
+    def __init__(self, *, of_bytes: bool) -> None:
+        columns = (DownloadColumn(), TransferSpeedColumn()) if of_bytes else (TextColumn("{task.percentage:>3.0f}%"),)
+        console = Console(stderr=True)
+        self._progress = Progress(BarColumn(30), *columns, TextColumn("{task.description}"), console=console)
+        self._tasks: dict[str, TaskID] = {}
+        self._one = not of_bytes
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def show(self, name: str, done: int, total: int) -> None:
+        """Move the bar of a file; for an inspection there is only one, whose text changes."""
+        known = "" if self._one else name
+        if known not in self._tasks:
+            self._tasks[known] = self._progress.add_task(escape(name), total=total)
+        self._progress.update(self._tasks[known], completed=done, total=total, description=escape(name))
+
+
+class Silence:
+    """No bar: the output is a log or is read by a program."""
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing to end."""
+
+
+def _bar() -> Bars | Silence:
+    return Bars(of_bytes=False) if sys.stderr.isatty() else Silence()
+
+
+def byte_bars() -> Bars | Silence:
+    """Bars for transfers where there is a terminal to show them."""
+    return Bars(of_bytes=True) if sys.stderr.isatty() else Silence()
+
+
+def folder_of(parsed: argparse.Namespace) -> Path:
+    """Where downloads go: the folder asked for, or one with the inspection's name."""
+    return Path(parsed.out) if parsed.out is not None else Path(parsed.id)

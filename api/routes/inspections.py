@@ -193,7 +193,11 @@ def _moment(value: datetime | None, name: str) -> datetime | None:
 
 
 @router.delete(
-    "/{inspection_id}", status_code=204, summary="Delete an inspection", responses=responses(401, 404, 410, 503)
+    "/{inspection_id}",
+    status_code=204,
+    response_class=Response,
+    summary="Delete an inspection",
+    responses=responses(401, 404, 410, 503),
 )
 async def delete(request: Request, caller: CallerOf, inspection_id: str) -> Response:
     """Stop it if it is active, and remove it: from now on its id answers 410; files go soon after."""

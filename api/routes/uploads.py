@@ -43,8 +43,10 @@ _TUS = [Depends(speaks_tus)]
 _EXAMPLE: dict[str, Any] = {"headers": {"Upload-Offset": {"schema": {"type": "integer"}, "example": 5242880}}}
 
 
-@router.options("", status_code=204, summary="What this server can do")
-@router.options("/{upload_id}", status_code=204, summary="What this server can do", include_in_schema=False)
+@router.options("", status_code=204, summary="What this server can do", response_class=Response)
+@router.options(
+    "/{upload_id}", status_code=204, summary="What this server can do", include_in_schema=False, response_class=Response
+)
 def capabilities(request: Request) -> Response:
     """Version, extensions and the largest upload."""
     return _answer(
@@ -61,6 +63,7 @@ def capabilities(request: Request) -> Response:
     "",
     status_code=201,
     summary="Begin an upload",
+    response_class=Response,
     dependencies=_TUS,
     responses={
         201: {"description": "made; `Location` is where to send the bytes"},
@@ -90,6 +93,7 @@ def create(
 @router.head(
     "/{upload_id}",
     summary="How much has arrived",
+    response_class=Response,
     dependencies=_TUS,
     responses={200: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE}, **responses(401, 404, 410, 412)},
 )
@@ -106,6 +110,7 @@ def offset(request: Request, caller: CallerOf, upload_id: str) -> Response:
     "/{upload_id}",
     status_code=204,
     summary="Send bytes",
+    response_class=Response,
     dependencies=_TUS,
     responses={
         204: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE},
@@ -133,6 +138,7 @@ async def send(
     "/{upload_id}",
     status_code=204,
     summary="Give an upload up",
+    response_class=Response,
     dependencies=_TUS,
     responses=responses(401, 404, 410, 412, 423),
 )

@@ -13,7 +13,7 @@ from html import escape
 from typing import Any
 
 from core.gallery.assets import SCRIPT, STYLE
-from core.gallery.boxes import RGB, FrameBoxes
+from core.gallery.boxes import FrameBoxes
 from core.mapping.rows import REASONS, DetectionRow
 
 OUTCOMES = ("mapped", "approximate", "unplaced")

@@ -1,0 +1,85 @@
+"""API keys and idempotency keys, on SQLite and PostgreSQL."""
+
+from __future__ import annotations
+
+import pytest
+from sqlalchemy import select
+from sqlalchemy.exc import IntegrityError
+
+from core.errors import BadInput
+from store.db import Database
+from store.idempotency import IdempotencyKeys, OtherBody
+from store.keys import KeyRing, Keys
+from store.models import ApiKey
+
+
+class Clock:
+    """Time as the test says it is."""
+
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_a_key_is_kept_as_a_hash_and_found_again(db: Database) -> None:
+    keys = Keys(db)
+    view, key = keys.create("inspector")
+    with db.read() as session:
+        (row,) = session.scalars(select(ApiKey)).all()
+    assert key not in str(vars(row))
+    assert key.split("_", 2)[2] not in str(vars(row))
+    ring = KeyRing(keys)
+    ring.refresh()
+    assert ring.owner(key) == view.id
+    for wrong in ("", key[:-1], key + "x", key.replace("ba_", "ab_"), f"ba_{'0' * 32}_{'A' * 43}", "ü", "\ud800"):
+        assert ring.owner(wrong) is None
+    other = keys.create("other")[1]
+    mixed = f"ba_{view.id}_{other.split('_', 2)[2]}"
+    assert ring.owner(mixed) is None
+
+
+def test_a_revoked_key_ends_within_a_moment(db: Database) -> None:
+    keys, clock = Keys(db), Clock()
+    view, key = keys.create("inspector")
+    ring = KeyRing(keys, clock=clock)
+    ring.refresh()
+    assert not ring.empty
+    keys.revoke(view.id)
+    assert ring.fresh
+    clock.now = 1.1
+    assert not ring.fresh
+    ring.refresh()
+    assert ring.owner(key) is None
+    assert ring.empty
+    assert [found.revoked_at is not None for found in keys.all()] == [True]
+    with pytest.raises(BadInput):
+        keys.revoke("nobody")
+
+
+def test_the_use_of_a_key_is_noted_once_a_minute(db: Database) -> None:
+    keys, clock = Keys(db), Clock()
+    view, _ = keys.create("inspector")
+    ring = KeyRing(keys, clock=clock)
+    assert [ring.unnoted(view.id), ring.unnoted(view.id)] == [True, False]
+    clock.now = 61.0
+    assert ring.unnoted(view.id)
+    keys.note_use(view.id)
+    first = keys.all()[0].last_used_at
+    assert first is not None
+    keys.note_use(view.id)
+    assert keys.all()[0].last_used_at == first
+
+
+def test_a_request_is_known_by_its_key_and_its_body(db: Database) -> None:
+    keys = IdempotencyKeys(db)
+    assert keys.find("me", "k", "a" * 64) is None
+    with db.write() as session:
+        keys.add(session, "me", "k", "a" * 64, "one")
+    assert keys.find("me", "k", "a" * 64) == "one"
+    assert keys.find("you", "k", "a" * 64) is None
+    with pytest.raises(OtherBody):
+        keys.find("me", "k", "b" * 64)
+    with pytest.raises(IntegrityError), db.write() as session:
+        keys.add(session, "me", "k", "a" * 64, "two")
+    assert keys.find("me", "k", "a" * 64) == "one"

@@ -1,0 +1,165 @@
+"""What inspections look like from outside, and their lists, on SQLite and PostgreSQL."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from sqlalchemy import update
+
+from core.errors import BadInput
+from core.settings import make_settings
+from store.counts import count_all
+from store.db import Database
+from store.deletion import mark_deleted
+from store.forgetting import forget_from
+from store.inspections import Inspections
+from store.listing import Filter, count_active, list_inspections
+from store.models import Inspection
+from store.plan import Plan
+from store.progress import StageCount, plan_share
+from store.status import InspectionStatus, Statuses
+from store.timings import learn_timings, plan_eta
+from tests.store.small_plan import FILES, GRAPH, result_for
+
+
+def create(db: Database, name: str, **more: object) -> None:
+    with db.write() as session:
+        Inspections(db, GRAPH).create_in(session, name, FILES, make_settings(), "", **more)
+
+
+def work(db: Database, name: str, tasks: int = 1000) -> None:
+    plan = Plan(db, GRAPH)
+    for _ in range(tasks):
+        lease = plan.lease("me", inspection_id=name)
+        if lease is None:
+            return
+        assert plan.complete(lease, result_for(lease))
+
+
+def publish(db: Database, name: str) -> None:
+    with db.write() as session:
+        session.execute(update(Inspection).where(Inspection.id == name).values(published=Inspection.attempt))
+
+
+def status(db: Database, name: str) -> InspectionStatus:
+    found = Statuses(db, GRAPH).read(name)
+    assert found is not None
+    return found
+
+
+def test_an_inspection_is_over_once_it_is_published(db: Database) -> None:
+    create(db, "one")
+    assert (status(db, "one").state, status(db, "one").stage, status(db, "one").queue_position) == (
+        "queued",
+        "split",
+        1,
+    )
+    work(db, "one")
+    assert (status(db, "one").state, status(db, "one").stage) == ("running", "publish")
+    assert status(db, "one").progress < 1
+    publish(db, "one")
+    assert (status(db, "one").state, status(db, "one").stage, status(db, "one").progress) == ("succeeded", None, 1.0)
+    assert Statuses(db, GRAPH).read("two") is None
+
+
+def test_a_cancelled_one_is_cancelling_until_what_it_reached_is_published(db: Database) -> None:
+    create(db, "one")
+    Plan(db, GRAPH).cancel("one")
+    assert status(db, "one").state == "cancelling"
+    publish(db, "one")
+    assert status(db, "one").state == "cancelled"
+
+
+def test_a_page_says_the_same_as_single_reads(db: Database) -> None:
+    create(db, "one")
+    work(db, "one", 2)
+    create(db, "two", label="x")
+    page = list_inspections(db, Filter(""), 10, None)
+    found = Statuses(db, GRAPH).read_many(page.rows)
+    assert [each.row.id for each in found] == ["two", "one"]
+    for each in found:
+        single = status(db, each.row.id)
+        assert (each.state, each.stages, each.progress) == (single.state, single.stages, single.progress)
+
+
+def test_pages_cover_everything_once_even_at_equal_times(db: Database) -> None:
+    names = [f"{number:02d}" for number in range(7)]
+    for name in names:
+        create(db, name)
+    with db.write() as session:
+        session.execute(update(Inspection).values(created_at=datetime(2026, 5, 4, tzinfo=UTC)))
+    seen: list[str] = []
+    cursor: str | None = None
+    while True:
+        page = list_inspections(db, Filter(""), 3, cursor)
+        seen += [row.id for row in page.rows]
+        if (cursor := page.cursor) is None:
+            break
+    assert seen == names[::-1]
+    for wrong in ("", "x", "W10", "WyJ4IiwieSJd"):
+        with pytest.raises(BadInput):
+            list_inspections(db, Filter(""), 3, wrong)
+
+
+def test_deleted_ones_and_those_of_others_are_not_listed(db: Database) -> None:
+    for name, owner in (("mine", "me"), ("gone", "me"), ("theirs", "you")):
+        create(db, name, owner=owner)
+    assert mark_deleted(db, "gone")
+    assert not mark_deleted(db, "gone")
+    assert [row.id for row in list_inspections(db, Filter("me"), 10, None).rows] == ["mine"]
+    assert count_active(db) == 3
+
+
+def test_counts_of_everything(db: Database) -> None:
+    create(db, "one")
+    with db.write() as session:
+        earlier = db.now(session) - timedelta(seconds=100)
+        session.execute(update(Inspection).values(created_at=earlier))
+    counts = count_all(db)
+    assert (counts.inspections, counts.tasks, counts.uploads) == ({"queued": 1}, {("cpu", "runnable"): 1}, 0)
+    assert 99 < counts.oldest_queued_s < 160
+    work(db, "one", 1)
+    assert count_all(db).attempts == {"succeeded": 1}
+
+
+def test_progress_weighs_stages_and_passes_over_what_never_came() -> None:
+    assert plan_share(GRAPH, {}) == 0.0
+    half = {"split": StageCount(1, 1), "part": StageCount(4, 1, running=1.0)}
+    assert plan_share(GRAPH, half) == pytest.approx(1.5 / 4, abs=0.005)
+    assert plan_share(GRAPH, {name: StageCount(2, 2) for name in GRAPH.stages}) == 1.0
+    assert plan_share(GRAPH, {"last": StageCount(1, 1)}) == 1.0
+
+
+def test_timings_are_learnt_from_inspections_that_came_to_an_end(db: Database) -> None:
+    create(db, "one")
+    work(db, "one", 3)
+    assert learn_timings(db) == {}
+    work(db, "one")
+    learnt = learn_timings(db)
+    assert set(learnt) == set(GRAPH.stages)
+    assert learnt["part"].per_task == (0.75, 3.0), "one sample says little"
+    assert learnt["part"].per_plan == (2.25, 9.0)
+    with db.write() as session:
+        Inspections(db, GRAPH).create_in(session, "two", FILES, make_settings(options={"matching.window": 9}), "")
+    fresh = status(db, "two").stages
+    assert plan_eta(fresh, GRAPH, learnt, workers=1) == (4.5, 18.0)
+    two_at_once = plan_eta(fresh, GRAPH, learnt, workers=2)
+    assert two_at_once is not None
+    assert two_at_once[0] < 4.5
+    assert plan_eta(fresh, GRAPH, {}, workers=1) is None
+
+
+def test_forgetting_takes_the_stage_and_all_that_follow(db: Database) -> None:
+    create(db, "one")
+    work(db, "one")
+    inspections = Inspections(db, GRAPH)
+    paths = forget_from(inspections, "one", "join")
+    assert sorted(path.split("/")[0] for path in paths) == ["join", "last"]
+    assert {path.split("/")[0] for path in inspections.known_results().values()} == {"split", "part"}
+    inspections.reopen("one", FILES, make_settings(), ended_only=True, label="again")
+    row = status(db, "one").row
+    assert (row.attempt, row.label, row.progress) == (2, "again", 0.0)
+    with pytest.raises(BadInput) as caught:
+        inspections.reopen("one", FILES, make_settings(), ended_only=True)
+    assert caught.value.code == "conflict"

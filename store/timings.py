@@ -67,6 +67,11 @@ def _interval(values: Sequence[float]) -> Interval:
 
 def stage_eta(stage: StageStatus, graph: Graph, timings: Timings, workers: int) -> Interval | None:
     """Seconds that are left of one stage; None when nothing is known about it."""
+    left = _left(stage, graph, timings, workers)
+    return None if left is None else (round(left[0], 1), round(left[1], 1))
+
+
+def _left(stage: StageStatus, graph: Graph, timings: Timings, workers: int) -> Interval | None:
     if stage.state not in ("waiting", "running"):
         return (0.0, 0.0)
     timing = timings.get(stage.name)
@@ -81,7 +86,7 @@ def stage_eta(stage: StageStatus, graph: Graph, timings: Timings, workers: int) 
 
 def plan_eta(stages: Sequence[StageStatus], graph: Graph, timings: Timings, workers: int) -> Interval | None:
     """Seconds that are left of the whole plan; None when some stage of it is unknown."""
-    etas = [stage_eta(stage, graph, timings, workers) for stage in stages]
+    etas = [_left(stage, graph, timings, workers) for stage in stages]
     known = [eta for eta in etas if eta is not None]
     if len(known) < len(etas):
         return None
@@ -89,4 +94,4 @@ def plan_eta(stages: Sequence[StageStatus], graph: Graph, timings: Timings, work
 
 
 def _scaled(interval: Interval, factor: float) -> Interval:
-    return (round(interval[0] * factor, 1), round(interval[1] * factor, 1))
+    return (interval[0] * factor, interval[1] * factor)

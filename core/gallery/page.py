@@ -14,6 +14,7 @@ from typing import Any
 
 from core.gallery.assets import SCRIPT, STYLE
 from core.gallery.boxes import FrameBoxes
+from core.gallery.palette import RGB
 from core.mapping.rows import REASONS, DetectionRow
 
 OUTCOMES = ("mapped", "approximate", "unplaced")

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from api.parameters import Text
 from core.settings import PRESET_NAMES
 
 Interval = tuple[float, float]
@@ -151,5 +152,5 @@ class Parameters(BaseModel):
 
     preset: str = Field("default", description="where the values start: " + ", ".join(PRESET_NAMES))
     options: dict[str, Any] = Field({}, description="values by dotted name; `GET /v1/options` lists them")
-    label: str = Field("", max_length=256, description="free text")
-    external_id: str = Field("", max_length=256, description="the caller's own name for it; need not be unique")
+    label: Text = Field("", description="free text")
+    external_id: Text = Field("", description="the caller's own name for it; need not be unique")

@@ -76,6 +76,9 @@ def answer(question: dict[str, Any]) -> dict[str, Any]:
         return {"error": error.to_dict()}
     except MemoryError:
         return {"error": BadInput("the input needs more memory than it may take", code="too_complex").to_dict()}
+    except Exception as error:  # noqa: BLE001 - the border of the process: what a decoder stumbles over is bad input
+        message = f"the input cannot be read ({type(error).__name__})"
+        return {"error": BadInput(message, code="probe_died", where="video").to_dict()}
     return {"video": found, "n_detections": len(annotations.detections)}
 
 

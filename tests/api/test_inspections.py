@@ -236,6 +236,25 @@ def test_an_id_that_names_nothing_is_not_found(client: TestClient, name: str) ->
 
 
 @pytest.mark.parametrize(
+    ("body", "pointer"),
+    [
+        ({"parameters": {"label": "\0"}}, "/parameters/label"),
+        ({"parameters": {"preset": "fast"}}, "/parameters/preset"),
+        ({"parameters": {"options": {"matching.windw": 1}}}, "/parameters/options/matching.windw"),
+        ({"from": "mesh"}, "/from"),
+    ],
+)
+def test_a_wrong_retry_is_named_and_changes_nothing(
+    backend: Backend, client: TestClient, body: dict[str, Any], pointer: str
+) -> None:
+    one = backend.finished("one")
+    answer = client.post(f"/v1/inspections/{one}/retry", json=body)
+    assert answer.status_code == 422
+    assert [error["pointer"] for error in answer.json()["errors"]] == [pointer]
+    assert client.get(f"/v1/inspections/{one}").json()["attempt"] == 1
+
+
+@pytest.mark.parametrize(
     ("error", "code", "reason", "retryable"),
     [
         (NoReconstruction("nothing moves", code="no_parallax"), "no_reconstruction", "no_parallax", False),

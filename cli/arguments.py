@@ -23,7 +23,6 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _run(commands)
-    add_remote_commands(commands, _EXIT_CODES)
     probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
     probe.add_argument("video", type=Path, metavar="VIDEO")
     _json(probe)
@@ -35,6 +34,7 @@ def parser() -> argparse.ArgumentParser:
     _preset(options)
     _json(options)
     _json(_add(commands, "version", "print the versions of this program and of the engines it uses"))
+    add_remote_commands(commands, _EXIT_CODES)
     return top
 
 

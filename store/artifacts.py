@@ -9,19 +9,24 @@ from __future__ import annotations
 import hashlib
 import os
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import IO, Any
 
 import fsspec
 from fsspec.implementations.local import LocalFileSystem
 
-from core.errors import BadInput
+from core.errors import BadInput, ResourceError
+from core.fingerprint import digest_of_file
 from store.disk import sync_path
 
 _CHUNK = 1 << 20
+_PART = ".part-"
+UNREACHABLE = "store_unreachable"
+"""Code of the error that waiting may mend."""
 
 
 @dataclass(frozen=True)
@@ -39,48 +44,122 @@ class ArtifactStore:
     def __init__(self, root: Path | str, **options: Any) -> None:
         if isinstance(root, Path):  # never read as a URL: a folder may have any name
             self._fs, self._root = LocalFileSystem(), str(root.absolute())
+            self._silence: tuple[type[Exception], ...] = ()
         else:
-            self._fs, self._root = fsspec.core.url_to_fs(root, **options)
+            from botocore.exceptions import BotoCoreError  # noqa: PLC0415 - a local folder needs none of it
+
+            self._silence = (BotoCoreError,)
+            # Others write to the same store: what it held a minute ago is no answer.
+            self._fs, self._root = fsspec.core.url_to_fs(root, use_listings_cache=False, **options)
         self._local = isinstance(self._fs, LocalFileSystem)
+
+    @property
+    def folder(self) -> Path | None:
+        """The root as a local folder; None for an object store."""
+        return Path(self._root) if self._local else None
 
     def put(self, path: str, source: Path) -> Stored:
         """Store a copy of the file `source` under `path`, replacing what was there in one step."""
         target = self._full(path)
-        with source.open("rb") as read, self._writer(target) as write:
+        if not self._local:
+            digest, size = digest_of_file(source), source.stat().st_size
+            with self._answering():
+                self._fs.put_file(str(source), target)
+            return Stored(path, size, digest)
+        with source.open("rb") as read, _written_whole(Path(target)) as part, part.open("wb") as write:
             digest, size = _copy(read, write)
+            write.flush()
+            os.fsync(write.fileno())
         return Stored(path, size, digest)
+
+    def link(self, path: str, source: Path, known: Stored) -> Stored:
+        """Store a file that never changes and whose hash is known: on one file system without copying a byte."""
+        if self._local:
+            with suppress(OSError), _written_whole(Path(self._full(path)), lambda part: part.hardlink_to(source)):
+                return Stored(path, known.size, known.sha256)
+        return self.put(path, source)
+
+    def fetch(self, path: str, target: Path, sha256: str) -> None:
+        """Copy a stored file to the local file `target`, there whole or not at all.
+
+        Raises:
+            FileNotFoundError: there is none.
+            ResourceError: it is not the file that `sha256` names.
+        """
+        full = self._full(path)
+        with _written_whole(target) as part:
+            with self._answering():
+                self._fs.get_file(full, str(part))
+            if digest_of_file(part) != sha256:
+                raise ResourceError(f"'{path}' in the store is damaged", code="damaged_file", where=path)
+            sync_path(part)
 
     @contextmanager
     def open(self, path: str) -> Iterator[IO[bytes]]:
         """Read a file; FileNotFoundError when there is none."""
-        with self._fs.open(self._full(path), "rb") as stream:
+        with self._answering(), self._fs.open(self._full(path), "rb") as stream:
             yield stream
 
     def exists(self, path: str) -> bool:
         """True for a stored file."""
-        return bool(self._fs.isfile(self._full(path)))
+        with self._answering():
+            return bool(self._fs.isfile(self._full(path)))
 
     def size(self, path: str) -> int:
         """Bytes of a stored file."""
-        return int(self._fs.size(self._full(path)))
+        with self._answering():
+            return int(self._fs.size(self._full(path)))
+
+    def age_s(self, path: str) -> float:
+        """Seconds since a file was last written; FileNotFoundError when there is none."""
+        with self._answering():
+            modified: datetime = self._fs.modified(self._full(path))
+        # The memory file system of tests says UTC without a zone.
+        return (datetime.now(UTC) - (modified if modified.tzinfo else modified.replace(tzinfo=UTC))).total_seconds()
 
     def remove(self, path: str) -> None:
         """Remove a file; nothing happens when there is none."""
-        with suppress(FileNotFoundError):
+        with self._answering(), suppress(FileNotFoundError):
             self._fs.rm_file(self._full(path))
+            self._prune(path)
 
-    def list(self) -> list[str]:
-        """Relative paths of all files, sorted; temporary files of writes that were cut off are not files."""
-        root = self._root.rstrip("/") + "/"
-        found = (str(name).removeprefix(root) for name in self._fs.find(self._root))
-        return sorted(name for name in found if not PurePosixPath(name).name.startswith(".part-"))
+    def list(self, below: str = "") -> list[str]:
+        """Relative paths of all files (below a folder), sorted; temporary files of writes are not files."""
+        return sorted(name for name in self._find(below) if not PurePosixPath(name).name.startswith(_PART))
 
-    def sweep(self) -> int:
+    def sweep(self, older_than_s: float = 0.0) -> int:
         """Remove what writes left behind that were cut off; returns how many files."""
-        stale = [name for name in self._fs.find(self._root) if PurePosixPath(name).name.startswith(".part-")]
+        stale = [name for name in self._find("") if PurePosixPath(name).name.startswith(_PART)]
+        removed = 0
         for name in stale:
-            self._fs.rm_file(name)
-        return len(stale)
+            with suppress(FileNotFoundError):
+                if self.age_s(name) >= older_than_s:
+                    self.remove(name)
+                    removed += 1
+        return removed
+
+    def _find(self, below: str) -> list[str]:
+        root = self._root.rstrip("/") + "/"
+        with self._answering(), suppress(FileNotFoundError):
+            return [str(name).removeprefix(root) for name in self._fs.find(self._full(below) if below else self._root)]
+        return []
+
+    @contextmanager
+    def _answering(self) -> Iterator[None]:
+        """Say in our own words that an object store does not answer."""
+        try:
+            yield
+        except self._silence as error:
+            raise ResourceError(f"the object store does not answer: {error}", code=UNREACHABLE, where="store") from None
+
+    def _prune(self, path: str) -> None:
+        """Remove the folders that a removed file left empty, as an object store has none."""
+        if self._local:
+            for folder in PurePosixPath(path).parents[:-1]:
+                try:
+                    Path(self._full(str(folder))).rmdir()
+                except OSError:
+                    return
 
     def _full(self, path: str) -> str:
         parts = PurePosixPath(path)
@@ -88,25 +167,33 @@ class ArtifactStore:
             raise BadInput(f"'{path}' is not a path inside the store", code="bad_path", where="artifact")
         return f"{self._root.rstrip('/')}/{parts}"
 
-    @contextmanager
-    def _writer(self, target: str) -> Iterator[IO[bytes]]:
-        if not self._local:
-            with self._fs.open(target, "wb") as stream:
-                yield stream
-            return
-        final = Path(target)
+
+@contextmanager
+def _written_whole(final: Path, begin: Callable[[Path], None] = Path.touch) -> Iterator[Path]:
+    """A temporary name beside `final`, made by `begin`, that becomes it when the block ends well."""
+    part = _begun(final, begin)
+    try:
+        yield part
+        part.replace(final)
+        sync_path(final.parent)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def _begun(final: Path, begin: Callable[[Path], None]) -> Path:
+    """The temporary file; somebody who removes the last file of a folder may take the folder away under us."""
+    for tries_left in reversed(range(5)):
+        part = final.with_name(f"{_PART}{uuid.uuid4().hex}")
         final.parent.mkdir(parents=True, exist_ok=True)
-        part = final.with_name(f".part-{uuid.uuid4().hex}")
         try:
-            with part.open("wb") as stream:
-                yield stream
-                stream.flush()
-                os.fsync(stream.fileno())
-            part.replace(final)
-            sync_path(final.parent)
-        except BaseException:
-            part.unlink(missing_ok=True)
-            raise
+            begin(part)
+        except FileNotFoundError:
+            if not tries_left:
+                raise
+        else:
+            break
+    return part
 
 
 def _copy(read: IO[bytes], write: IO[bytes]) -> tuple[str, int]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from core.errors import BadInput
 from core.fingerprint import task_fingerprint
 from core.graph import STAGES, StageSpec, TaskSpec, expand, stage_settings
 from core.settings import Settings
@@ -44,3 +46,15 @@ class Graph:
 
 CORE_GRAPH = Graph(STAGES, expand, serves_from=("reduce_coarse",))
 """What every inspection runs. A reducer that succeeded has named a case with a model."""
+
+
+def load_graph(name: str) -> Graph:
+    """The graph that ``module:name`` names; `BadInput` when there is none."""
+    module, _, attribute = name.partition(":")
+    try:
+        graph = getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise BadInput(f"there is no stage graph '{name}': {error}", where="BLADEATLAS_GRAPH") from error
+    if not isinstance(graph, Graph):
+        raise BadInput(f"'{name}' is no stage graph", where="BLADEATLAS_GRAPH")
+    return graph

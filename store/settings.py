@@ -33,6 +33,7 @@ class DeploymentSettings(BaseSettings):
         21_600.0, gt=0, description="the broker hands an unacknowledged message out again after this"
     )
     sweep_s: float = Field(10.0, gt=0, description="what was lost is looked for this often, in seconds")
+    stale_s: float = Field(600.0, ge=0, description="files that belong to nothing are removed after so long, in seconds")
     retention_days: float = Field(30.0, ge=0, description="an inspection is removed so long after it ended; 0 = never")
     upload_hours: float = Field(72.0, gt=0, description="an upload that nobody used is removed after this")
     reserve_bytes: int = Field(2 << 30, ge=0, description="free space below which new work is refused (507)")
@@ -42,6 +43,8 @@ class DeploymentSettings(BaseSettings):
     probe_seconds: float = Field(60.0, gt=0, description="time limit of looking into an uploaded video")
     probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
 
+    graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
+
     def folder(self, name: str) -> Path:
         """A folder of the data folder."""
         return self.data_dir.absolute() / name
@@ -49,6 +52,10 @@ class DeploymentSettings(BaseSettings):
     def database(self) -> str | URL:
         """URL of the database."""
         return self.database_url or URL.create("sqlite+pysqlite", database=str(self.folder("bladeatlas.db")))
+
+    def artifacts(self) -> Path | str:
+        """Root of the artifact store: a folder, or a URL."""
+        return self.artifacts_url or self.folder("artifacts")
 
     def worker_count(self) -> int:
         """Number of tasks side by side."""

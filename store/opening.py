@@ -1,0 +1,58 @@
+"""From deployment settings to what they name: the database with its tables, the artifact store."""
+
+from __future__ import annotations
+
+import time
+
+from sqlalchemy import text
+from sqlalchemy.exc import OperationalError
+
+from store.artifacts import ArtifactStore
+from store.db import Database, make_engine, open_sqlite, upgrade
+from store.settings import DeploymentSettings
+
+_UPGRADE_LOCK = 0x626C6164
+"""PostgreSQL's advisory lock under which tables are changed, so that processes may start together."""
+_PATIENCE_S = 60.0
+_RECONNECT_S = 0.5
+
+
+def open_database(settings: DeploymentSettings) -> Database:
+    """The database with its newest tables; waits a minute for a server that is just starting.
+
+    Raises:
+        BadInput: it is of a newer version of this program, or a damaged file.
+        OperationalError: no server answers.
+    """
+    if not settings.database_url:
+        path = settings.folder("bladeatlas.db")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return open_sqlite(path)
+    deadline = time.monotonic() + _PATIENCE_S
+    while True:
+        try:
+            _upgrade_one_at_a_time(settings.database_url)
+            return Database(settings.database_url)
+        except OperationalError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(_RECONNECT_S)
+
+
+def open_artifacts(settings: DeploymentSettings) -> ArtifactStore:
+    """The artifact store: ``inputs/``, ``results/``, ``inspections/`` and ``logs/`` below one root."""
+    root = settings.artifacts()
+    return ArtifactStore(root, **(settings.artifacts_options if isinstance(root, str) else {}))
+
+
+def _upgrade_one_at_a_time(url: str) -> None:
+    engine = make_engine(url)
+    try:
+        if engine.dialect.name != "postgresql":
+            upgrade(url)
+            return
+        with engine.connect() as connection:
+            connection.execute(text("SELECT pg_advisory_lock(:name)"), {"name": _UPGRADE_LOCK})
+            upgrade(url)
+    finally:
+        engine.dispose()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -111,7 +112,9 @@ class ArtifactStore:
             return int(self._fs.size(self._full(path)))
 
     def age_s(self, path: str) -> float:
-        """Seconds since a file was last written; FileNotFoundError when there is none."""
+        """Seconds since a file was last written or linked; FileNotFoundError when there is none."""
+        if self._local:
+            return time.time() - Path(self._full(path)).stat().st_ctime
         with self._answering():
             modified: datetime = self._fs.modified(self._full(path))
         # The memory file system of tests says UTC without a zone.

@@ -26,11 +26,16 @@ class MirroredResults(ResultFolders):
     def find(self, stage: str, fingerprint: str) -> Manifest | None:
         """The manifest of a result that is whole here and in the store; else None."""
         manifest = super().find(stage, fingerprint)
-        if manifest is not None:
-            if not self._store.exists(self._stored(stage, fingerprint, MANIFEST)):
-                self._upload(manifest)
+        if manifest is None:
+            return super().find(stage, fingerprint) if self._download(stage, fingerprint) else None
+        if self._store.exists(self._stored(stage, fingerprint, MANIFEST)):
             return manifest
-        return super().find(stage, fingerprint) if self._download(stage, fingerprint) else None
+        if self._mark(stage, fingerprint).exists():
+            # It was there once, so it was removed: what is forgotten everywhere must not come back from here.
+            self._forget(stage, fingerprint)
+            return None
+        self._upload(manifest)
+        return manifest
 
     def have(self, relative: str | os.PathLike[str]) -> bool:
         """True when a result's folder is here, downloaded when it was not."""
@@ -41,7 +46,7 @@ class MirroredResults(ResultFolders):
 
     def remove(self, stage: str, fingerprint: str) -> None:
         """Remove a result here and in the store, there the manifest first."""
-        super().remove(stage, fingerprint)
+        self._forget(stage, fingerprint)
         self._store.remove(self._stored(stage, fingerprint, MANIFEST))
         for path in self._store.list(f"results/{self.relative(stage, fingerprint)}"):
             self._store.remove(path)
@@ -53,17 +58,26 @@ class MirroredResults(ResultFolders):
             folder = path.parent
             name = self.relative(folder.parent.name, folder.name)
             if name not in used and age_s(folder) >= older_than_s:
-                super().remove(folder.parent.name, folder.name)
+                self._forget(folder.parent.name, folder.name)
                 removed += 1
         return removed
 
     def _stored(self, stage: str, fingerprint: str, name: str) -> str:
         return f"results/{self.relative(stage, fingerprint)}/{name}"
 
+    def _mark(self, stage: str, fingerprint: str) -> Path:
+        """A file that says: the store has had this result."""
+        return self.root / stage / f".mirrored-{fingerprint}"
+
+    def _forget(self, stage: str, fingerprint: str) -> None:
+        super().remove(stage, fingerprint)
+        self._mark(stage, fingerprint).unlink(missing_ok=True)
+
     def _upload(self, manifest: Manifest) -> None:
         folder = self.path(self.relative(manifest.stage, manifest.fingerprint))
         for name in (*manifest.files, MANIFEST):
             self._store.put(self._stored(manifest.stage, manifest.fingerprint, name), folder / name)
+        self._mark(manifest.stage, manifest.fingerprint).touch()
 
     def _download(self, stage: str, fingerprint: str) -> bool:
         """Fetch a result, whole or not at all; False when the store has none."""
@@ -79,6 +93,7 @@ class MirroredResults(ResultFolders):
                 self._store.fetch(self._stored(stage, fingerprint, name), temporary / name, entry["sha256"])
             (temporary / MANIFEST).write_bytes(text)
             self._keep(temporary, stage, fingerprint)
+            self._mark(stage, fingerprint).touch()
         except FileNotFoundError:
             return False  # removed while we read: it was not needed by anybody
         finally:

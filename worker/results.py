@@ -153,6 +153,13 @@ class ResultFolders:
             shutil.rmtree(folder, ignore_errors=True)
         return len(stale)
 
+    def unknown(self, known: Callable[[], Collection[str]], older_than_s: float) -> list[str]:
+        """Relative paths of results whose fingerprint `known` does not name: a crash cut their story off."""
+        listed = [path.parent for path in self.root.glob(f"*/*/{MANIFEST}") if not path.parent.name.startswith(_TEMP)]
+        names = known()
+        unknown = [folder for folder in listed if folder.name not in names and age_s(folder) >= older_than_s]
+        return [self.relative(folder.parent.name, folder.name) for folder in unknown]
+
     def remove(self, stage: str, fingerprint: str) -> None:
         """Remove a result."""
         self._remove(self.root / stage / fingerprint)

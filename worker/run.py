@@ -27,7 +27,8 @@ from worker.folder import RunFolder, locked
 from worker.local import LocalRunners, raise_failure
 from worker.logs import TaskLogs
 from worker.outcome import OnEvent, Outcome, OutcomeState, StageOutcome
-from worker.publish import publish, record_of, report_rows
+from worker.publish import record_of, report_rows
+from worker.publish_folder import publish
 from worker.reporter import Reporter
 from worker.results import ResultFolders
 from worker.runner import TaskRunner, result_of

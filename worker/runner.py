@@ -12,13 +12,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-import structlog
-
 from core.errors import BladeAtlasError, DiskFull, ResourceError, StageFailed
 from core.settings import Settings
 from store.artifacts import UNREACHABLE
 from store.disk import NO_SPACE
 from store.inputs import LocalInputs
+from store.json_log import logger
 from store.plan import Plan
 from store.records import Lease, Result
 from store.settings import available_cores
@@ -29,7 +28,7 @@ from worker.results import Manifest, ResultFolders
 from worker.rows import rows_of
 
 T = TypeVar("T")
-_log = structlog.get_logger()
+_log = logger("bladeatlas.tasks")
 _SAME_AGAIN = ("oom", "timeout")
 """Codes of errors that a second attempt would meet again, after the same time and to the same harm of others."""
 _STORE_PAUSE_S = 5.0

@@ -54,6 +54,7 @@ def _inspection_columns() -> list[sa.Column[Any]]:
         sa.Column("publish_expires_at", sa.DateTime(), nullable=True),
         sa.Column("expires_at", sa.DateTime(), nullable=True),
         sa.Column("deleted_at", sa.DateTime(), nullable=True),
+        sa.Column("purged_at", sa.DateTime(), nullable=True),
     ]
 
 

@@ -47,7 +47,7 @@ class ArtifactStore:
             self._fs, self._root = LocalFileSystem(), str(root.absolute())
             self._silence: tuple[type[Exception], ...] = ()
         else:
-            from botocore.exceptions import BotoCoreError  # noqa: PLC0415 - a local folder needs none of it
+            from botocore.exceptions import BotoCoreError
 
             self._silence = (BotoCoreError,)
             # Others write to the same store: what it held a minute ago is no answer.

@@ -33,7 +33,9 @@ class DeploymentSettings(BaseSettings):
         21_600.0, gt=0, description="the broker hands an unacknowledged message out again after this"
     )
     sweep_s: float = Field(10.0, gt=0, description="what was lost is looked for this often, in seconds")
-    stale_s: float = Field(600.0, ge=0, description="files that belong to nothing are removed after so long, in seconds")
+    stale_s: float = Field(
+        600.0, ge=0, description="files that belong to nothing are removed after so long, in seconds"
+    )
     retention_days: float = Field(30.0, ge=0, description="an inspection is removed so long after it ended; 0 = never")
     upload_hours: float = Field(72.0, gt=0, description="an upload that nobody used is removed after this")
     reserve_bytes: int = Field(2 << 30, ge=0, description="free space below which new work is refused (507)")

@@ -43,7 +43,7 @@ class Publisher:
         while (ticket := self.publishing.take(self.owner)) is not None:
             try:
                 done += self.publish(ticket)
-            except Exception:
+            except Exception:  # noqa: BLE001 - whatever is wrong with one must not stop the others
                 # Its lease runs out by itself: the others first, then this one again.
                 _log.exception("publishing_failed", inspection=ticket.inspection_id)
         return done

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import fcntl
 import ipaddress
+import signal
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -15,7 +16,7 @@ from fastapi import FastAPI
 from sqlalchemy import func, select
 
 from api.app import create_app
-from core.errors import BadInput
+from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.db import Database
 from store.graph import Graph, load_graph
@@ -153,6 +154,9 @@ def _listen(application: FastAPI, host: str, port: int) -> None:
         timeout_graceful_shutdown=_DRAIN_S,
     )
     server = uvicorn.Server(config)
+    # uvicorn raises the signal once more at its end: by then it has done its work, and runners are still to be stopped.
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: None)
     server.run()
     if not server.started:
-        raise BadInput(f"the server cannot listen on {host}:{port}", code="address_in_use", where="--port")
+        raise BladeAtlasError("the server could not start; the lines above say why", where="serve")

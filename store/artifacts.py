@@ -10,7 +10,7 @@ import hashlib
 import os
 import time
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -141,7 +141,7 @@ class ArtifactStore:
                     removed += 1
         return removed
 
-    def _find(self, below: str) -> list[str]:
+    def _find(self, below: str) -> Sequence[str]:
         root = self._root.rstrip("/") + "/"
         with self._answering(), suppress(FileNotFoundError):
             return [str(name).removeprefix(root) for name in self._fs.find(self._full(below) if below else self._root)]

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection
+from collections.abc import Callable, Collection
+from contextlib import suppress
 from pathlib import Path
 
 from store.artifacts import ArtifactStore
@@ -50,6 +51,17 @@ class MirroredResults(ResultFolders):
         self._store.remove(self._stored(stage, fingerprint, MANIFEST))
         for path in self._store.list(f"results/{self.relative(stage, fingerprint)}"):
             self._store.remove(path)
+
+    def unknown(self, known: Callable[[], Collection[str]], older_than_s: float) -> list[str]:
+        """The same here and in the store."""
+        found = super().unknown(known, older_than_s)
+        listed = {tuple(path.split("/")[1:3]): path for path in self._store.list("results")}
+        names = known()
+        for (stage, fingerprint), path in listed.items():
+            with suppress(FileNotFoundError):
+                if fingerprint not in names and self._store.age_s(path) >= older_than_s:
+                    found.append(self.relative(stage, fingerprint))
+        return sorted(set(found))
 
     def evict(self, used: Collection[str], older_than_s: float) -> int:
         """Remove local copies of results whose relative path nobody needs here any more; returns how many."""

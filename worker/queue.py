@@ -76,11 +76,7 @@ class TaskQueue:
             name: of this worker, for the broker.
             on_stop: called when SIGTERM or SIGINT came: what runs should come to an end now.
         """
-
-        @self._app.task(name=_TASK)
-        def take(queue: str) -> None:
-            run(queue)
-
+        self._app.task(run, name=_TASK)
         # Celery leaves the logs alone when somebody listens to this.
         signals.setup_logging.connect(_leave_logging, weak=False)
         signals.worker_shutting_down.connect(lambda **_: on_stop(), weak=False)

@@ -31,8 +31,8 @@ def upgrade() -> None:
 
 def downgrade() -> None:
     """Drop them."""
-    for table in ("workers", "idempotency_keys", "api_keys", "artifacts", "uploads"):
-        op.drop_table(table)
+    for dropped in ("workers", "idempotency_keys", "api_keys", "artifacts", "uploads"):
+        op.drop_table(dropped)
     with op.batch_alter_table("inspections") as table:
         for name in _INDEXED:
             table.drop_index(f"ix_inspections_{name}")

@@ -43,11 +43,13 @@ class Deployment:
     root: Path
     db: Database
     environment: dict[str, str]
+    remote: ArtifactStore | None = None
+    """The object store, when the environment names one."""
     processes: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     @property
     def store(self) -> ArtifactStore:
-        return ArtifactStore(self.root / "artifacts")
+        return self.remote or ArtifactStore(self.root / "artifacts")
 
     @property
     def inspections(self) -> Inspections:
@@ -65,18 +67,24 @@ class Deployment:
         key = input_key(stored.sha256, "video")
         self.store.put(key, source)
         self.store.remove("upload")
-        named = {task.replace("__", "/"): wish for task, wish in wishes.items()}
-        (self.root / "artifacts" / key).with_name("control.json").write_text(json.dumps(named))
+        if self.remote is None:
+            self._control(self.root / "artifacts" / key, wishes)
         settings = make_settings(options={**SMALL, **(options or {})})
         self.inspections.create(name, InputFiles(key, stored.sha256, None, None), settings, "")
 
-    def start(self, *arguments: str) -> subprocess.Popen[bytes]:
+    @staticmethod
+    def _control(video: Path, wishes: dict[str, dict[str, Any]]) -> None:
+        named = {task.replace("__", "/"): wish for task, wish in wishes.items()}
+        video.with_name("control.json").write_text(json.dumps(named))
+
+    def start(self, *arguments: str, data_dir: str = "") -> subprocess.Popen[bytes]:
         """`bladeatlas` in a process of its own; what it says goes to a file."""
+        own = {"BLADEATLAS_DATA_DIR": str(self.root / data_dir)}
         with (self.root / f"process-{len(self.processes)}.log").open("wb") as log:
             process = subprocess.Popen(
                 [sys.executable, "-m", "cli.main", *arguments],
                 cwd=ROOT,
-                env={**os.environ, **FAST, "BLADEATLAS_DATA_DIR": str(self.root), **self.environment},
+                env={**os.environ, **FAST, **own, **self.environment},
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 preexec_fn=heed_interrupts,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import time
 from collections.abc import Iterator
@@ -9,9 +10,13 @@ from pathlib import Path
 
 import pytest
 from redis import Redis
+from sqlalchemy import select
 
+from store.artifacts import ArtifactStore
+from store.models import Inspection
 from store.plan import Plan
 from tests.databases import database
+from tests.store.object_store import new_bucket, options
 from tests.worker.deployment import Deployment, wait_for
 from tests.worker.fake_stages import GRAPH
 from worker.queue import TaskQueue
@@ -130,6 +135,27 @@ def test_cancel_ends_the_processes_of_a_job_within_ten_seconds(place: Deployment
     place.wait("one", state="cancelled")
     assert time.monotonic() - began < 10.0
     assert "summary.json" in place.artifacts("one")
+
+
+def test_machines_share_nothing_but_an_object_store(place: Deployment, s3: str) -> None:
+    url = new_bucket(s3)
+    place.remote = ArtifactStore(url, **options(s3))
+    place.environment |= {"BLADEATLAS_ARTIFACTS_URL": url, "BLADEATLAS_ARTIFACTS_OPTIONS": json.dumps(options(s3))}
+    for name in ("one", "two"):
+        place.create(name)
+    for machine in ("first", "second"):
+        place.start("worker", "--workers", "1", data_dir=machine)
+    place.wait("one", "two")
+    assert place.accepted_once("one")
+    stored = place.remote.list()
+    assert {f"inspections/one/1/{path}" for path in place.artifacts("one")} <= set(stored)
+    assert "logs/one/part__001.log" in stored
+    results = [place.root / machine / "results" for machine in ("first", "second")]
+    wait_for(lambda: not any(list(folder.glob("*/*/result.json")) for folder in results))
+    with place.db.write() as session:
+        for row in session.scalars(select(Inspection)):
+            row.deleted_at = place.db.now(session)
+    wait_for(lambda: place.store.list() == [])
 
 
 @pytest.mark.service("rabbitmq")

@@ -75,10 +75,14 @@ class ArtifactStore:
 
     def link(self, path: str, source: Path, known: Stored) -> Stored:
         """Store a file that never changes and whose hash is known: on one file system without copying a byte."""
+        return Stored(path, known.size, known.sha256) if self._linked(path, source) else self.put(path, source)
+
+    def adopt(self, path: str, source: Path) -> None:
+        """Store a file whose bytes nobody changes any more, without a copy where the disk allows it."""
         if self._local:
-            with suppress(OSError), _written_whole(Path(self._full(path)), lambda part: part.hardlink_to(source)):
-                return Stored(path, known.size, known.sha256)
-        return self.put(path, source)
+            sync_path(source)
+        if not self._linked(path, source):
+            self.put(path, source)
 
     def fetch(self, path: str, target: Path, sha256: str) -> None:
         """Copy a stored file to the local file `target`, there whole or not at all.
@@ -155,6 +159,13 @@ class ArtifactStore:
         except self._silence as error:
             raise ResourceError(f"the object store does not answer: {error}", code=UNREACHABLE, where="store") from None
 
+    def _linked(self, path: str, source: Path) -> bool:
+        """Try to give a local file a second name; False on another disk, or one without links."""
+        if self._local:
+            with suppress(OSError), _written_whole(Path(self._full(path)), lambda part: part.hardlink_to(source)):
+                return True
+        return False
+
     def _prune(self, path: str) -> None:
         """Remove the folders that a removed file left empty, as an object store has none."""
         if self._local:
@@ -178,6 +189,7 @@ def _written_whole(final: Path, begin: Callable[[Path], None] = Path.touch) -> I
     try:
         yield part
         part.replace(final)
+        part.unlink(missing_ok=True)  # between two names of one file a rename does nothing
         sync_path(final.parent)
     except BaseException:
         part.unlink(missing_ok=True)

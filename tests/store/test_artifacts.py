@@ -84,6 +84,8 @@ def test_a_linked_file_outlives_its_source(store: ArtifactStore, source: Path) -
     known = Stored("source.bin", len(data), hashlib.sha256(data).hexdigest())
     assert store.link("x/y.bin", source, known) == Stored("x/y.bin", known.size, known.sha256)
     assert store.link("x/y.bin", source, known).sha256 == known.sha256
+    store.adopt("x/y.bin", source)
+    assert store.sweep() == 0
     if store.folder is not None:
         assert (store.folder / "x/y.bin").stat().st_ino == source.stat().st_ino
     source.unlink()

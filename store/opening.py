@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 from sqlalchemy import text
 from sqlalchemy.exc import OperationalError
@@ -39,10 +40,12 @@ def open_database(settings: DeploymentSettings) -> Database:
             time.sleep(_RECONNECT_S)
 
 
-def open_artifacts(settings: DeploymentSettings) -> ArtifactStore:
-    """The artifact store: ``inputs/``, ``results/``, ``inspections/`` and ``logs/`` below one root."""
+def open_artifacts(settings: DeploymentSettings, folder: str = "") -> ArtifactStore:
+    """The artifact store, ``inputs/``, ``results/``, ``inspections/`` and ``logs/`` below one root; or one of these."""
     root = settings.artifacts()
-    return ArtifactStore(root, **(settings.artifacts_options if isinstance(root, str) else {}))
+    if isinstance(root, Path):
+        return ArtifactStore(root / folder)
+    return ArtifactStore(f"{root.rstrip('/')}/{folder}".rstrip("/"), **settings.artifacts_options)
 
 
 def _upgrade_one_at_a_time(url: str) -> None:

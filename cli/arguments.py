@@ -72,8 +72,9 @@ def _serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     serve.add_argument("--port", type=int, default=8000, help="port to bind to (8000)")
     serve.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
     worker = _add(commands, "worker", "run tasks of a distributed system until stopped", epilog=settings)
-    worker.add_argument("--queues", default="cpu", metavar="cpu,gpu", help="kinds of tasks to run (cpu)")
+    worker.add_argument("--queues", default="cpu,gpu", metavar="cpu,gpu", help="kinds of tasks to run (both)")
     worker.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
+    worker.add_argument("--check", action="store_true", help="only say whether a worker of this host is alive")
 
 
 def _add(

@@ -5,8 +5,9 @@ from __future__ import annotations
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import timedelta
 
-from sqlalchemy import delete
+from sqlalchemy import delete, select
 
 from store.db import Database
 from store.models import Worker
@@ -27,6 +28,13 @@ class WorkerRegistry:
                 row = Worker(name=name, host=platform.node()[:128], queues=list(queues), started_at=now, seen_at=now)
                 session.add(row)
             row.queues, row.seen_at = list(queues), now
+
+    def alive(self, within_s: float) -> list[str]:
+        """Names of this host's workers that were seen so lately."""
+        with self.db.read() as session:
+            since = self.db.now(session) - timedelta(seconds=within_s)
+            query = select(Worker.name).where(Worker.host == platform.node()[:128], Worker.seen_at >= since)
+            return list(session.scalars(query.order_by(Worker.name)))
 
     def gone(self, name: str) -> None:
         """A worker stops."""

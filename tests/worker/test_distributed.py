@@ -59,9 +59,12 @@ def test_jobs_of_two_workers_end_and_are_published(place: Deployment) -> None:
         assert place.accepted_once(name)
         assert sorted(place.started(name)) == ALL
         assert {"summary.json", "cases.json"} <= set(place.artifacts(name))
-    place.processes[0].send_signal(signal.SIGTERM)
-    assert place.processes[0].wait(15) == 0
+    assert place.start("worker", "--check").wait(30) == 0
+    for process in place.processes[:2]:
+        process.send_signal(signal.SIGTERM)
+    assert [process.wait(15) for process in place.processes[:2]] == [0, 0]
     assert "worker_stopped" in place.said()
+    assert place.start("worker", "--check").wait(30) == 1
 
 
 def test_every_message_twice_and_a_broker_without_memory_change_nothing(place: Deployment, broker: Redis) -> None:

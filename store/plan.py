@@ -31,6 +31,7 @@ from store.leasing import (
 )
 from store.models import Inspection, Task
 from store.records import Lease, Result
+from store.remaking import remake, vanished
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,11 @@ class Plan:
             if task_id is None:
                 return None
             now = self.db.now(session)
+            missing = vanished(session, session.get_one(Task, task_id))
+            if missing:
+                remake(session, inspection, missing)
+                self._go_on(session, inspection, now)
+                return None
             values = {
                 "state": "leased",
                 "fence": Task.fence + 1,
@@ -155,6 +161,18 @@ class Plan:
             if task is None:
                 return False
             give_back(task, inspection, now, counts=False)
+            self._go_on(session, inspection, now)
+            return True
+
+    def remake(self, lease: Lease, keys: Collection[str]) -> bool:
+        """Give a task back because the files of these dependencies are gone, and have them made anew."""
+        with self.db.write() as session:
+            inspection, now = lock_inspection(session, lease.inspection_id), self.db.now(session)
+            task = _end(session, lease, now, "released")
+            if task is None:
+                return False
+            give_back(task, inspection, now, counts=False)
+            remake(session, inspection, keys)
             self._go_on(session, inspection, now)
             return True
 

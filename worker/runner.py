@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from core.errors import BladeAtlasError, DiskFull, ResourceError, StageFailed
+from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
 from store.artifacts import UNREACHABLE
 from store.disk import NO_SPACE
@@ -96,6 +96,11 @@ class TaskRunner:
         if finished is not None:
             accepted = self._complete(lease, finished, finished.peak_rss_bytes) == "succeeded"
             return "reused" if accepted else "refused", None
+        missing = [key for key, path in lease.inputs.items() if not self.results.have(path)]
+        if missing:
+            _log.warning("results_vanished", **ids(lease), missing=missing)
+            remade = self._patiently(lambda: self.plan.remake(lease, missing))
+            return "released" if remade else "refused", None
         temporary = self.results.begin(lease.stage, lease.fingerprint)
         try:
             ended = self._in_child(held, temporary)
@@ -111,10 +116,6 @@ class TaskRunner:
 
     def _in_child(self, held: Held, temporary: Path) -> Ended:
         lease = held.lease
-        missing = [key for key, path in lease.inputs.items() if not self.results.have(path)]
-        if missing:
-            error = StageFailed(f"the result of {missing[0]} has vanished; run again to make it anew", where=lease.key)
-            return Ended(error, "", 0.0, 0)
         spec = self._spec(lease, temporary)
         process = TaskProcess(spec, self.logs.begin(lease), self.memory_limit_bytes, self.limit_s)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -60,7 +61,7 @@ def _meshes(expected: Path, found: Path) -> Iterator[str]:
         if not all(path.is_file() for path in paths):
             continue
         one, other = (_vertices(path) for path in paths)
-        worst = max(cKDTree(one).query(other)[0].max(), cKDTree(other).query(one)[0].max())
+        worst = max(float(np.max(cKDTree(a).query(b)[0])) for a, b in ((one, other), (other, one)))
         tolerance = _TOLERANCE * _diagonal(expected)
         if worst > tolerance:
             yield f"{name}: surfaces are {worst:.3g} apart, {tolerance:.3g} allowed"
@@ -80,9 +81,11 @@ def _apart(one: Sequence[Sequence[float | None]], other: Sequence[Sequence[float
     """Largest distance of two lists of places; infinite where only one of them is known."""
     worst = 0.0
     for a, b in zip(one, other, strict=True):
-        if None in a and None in b:
-            continue
-        worst = max(worst, float("inf") if None in a or None in b else float(np.linalg.norm(np.subtract(a, b))))
+        known = [np.array(place, dtype=float) for place in (a, b) if None not in place]
+        if len(known) == 1:
+            return math.inf
+        if known:
+            worst = max(worst, float(np.linalg.norm(known[0] - known[1])))
     return worst
 
 

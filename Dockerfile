@@ -16,7 +16,10 @@ COPY store ./store
 COPY worker ./worker
 RUN scripts/setup.sh
 
+# A named volume takes over the owner of the folder that it covers.
+RUN mkdir /data && chown bladeatlas:bladeatlas /data
 USER bladeatlas
-ENV PATH=/app/.venv/bin:$PATH
+ENV PATH=/app/.venv/bin:$PATH BLADEATLAS_DATA_DIR=/data
+VOLUME /data
 EXPOSE 8000
-CMD ["uvicorn", "--factory", "api.app:create_app", "--host", "0.0.0.0", "--port", "8000"]
+CMD ["bladeatlas", "serve", "--host", "0.0.0.0", "--port", "8000"]

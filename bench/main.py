@@ -1,4 +1,4 @@
-"""`bladeatlas-bench`: how right and how fast a result is."""
+"""`bladeatlas-bench`: how right and how fast a result is, and what the service survives."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.soak import command as soak
 from bench.speed import command as speed
 from core.errors import BadInput, BladeAtlasError
 
@@ -34,6 +35,9 @@ def make_parser() -> argparse.ArgumentParser:
     speed_parser = commands.add_parser("speed", help="time the parts of a finished run beside other programs")
     speed.add_arguments(speed_parser)
     speed_parser.set_defaults(run=speed.command)
+    soak_parser = commands.add_parser("soak", help="run jobs through a whole deployment while its processes are killed")
+    soak.add_arguments(soak_parser)
+    soak_parser.set_defaults(run=soak.command)
     return parser
 
 

@@ -23,6 +23,7 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _run(commands)
+    _serve(commands)
     probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
     probe.add_argument("video", type=Path, metavar="VIDEO")
     _json(probe)
@@ -64,6 +65,18 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument("--from", dest="from_stage", metavar="STAGE", help="compute this stage and what follows again")
     run.add_argument("--force", action="store_true", help="replace another input's result in DIR")
     _json(run, "print progress and result as JSON lines")
+
+
+def _serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    settings = "Settings are read from BLADEATLAS_* variables; see docs/operations/deploying.md."
+    serve = _add(commands, "serve", "serve HTTP, and run tasks unless a broker is configured", epilog=settings)
+    serve.add_argument("--host", default="127.0.0.1", help="address to bind to (127.0.0.1); others need an API key")
+    serve.add_argument("--port", type=int, default=8000, help="port to bind to (8000)")
+    serve.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
+    worker = _add(commands, "worker", "run tasks of a distributed system until stopped", epilog=settings)
+    worker.add_argument("--queues", default="cpu,gpu", metavar="cpu,gpu", help="kinds of tasks to run (both)")
+    worker.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
+    worker.add_argument("--check", action="store_true", help="only say whether a worker of this host is alive")
 
 
 def _add(

@@ -117,7 +117,8 @@ def _settle(
     task.fingerprint = graph.fingerprint(
         spec, settings, digests, inspection.video_sha256, inspection.annotations_sha256
     )
-    result = session.get(Result, task.fingerprint)
+    # Held until the commit: who cleans up waits, and then sees that this task uses it.
+    result = session.get(Result, task.fingerprint, with_for_update={"read": True})
     if result is None:
         task.state = "runnable"
         return False

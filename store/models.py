@@ -92,6 +92,8 @@ class Inspection(Base):
     """When retention removes it."""
     deleted_at: Mapped[datetime | None]
     """The row outlives its files, so that its id answers 410."""
+    purged_at: Mapped[datetime | None]
+    """When the files of a deleted inspection were removed."""
     previous: Mapped[list[str]]
     """Fingerprints of the plan before the last change of parameters: going back to it costs nothing."""
     created_at: Mapped[datetime]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import select, update
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from store.advance import accept, advance
@@ -31,6 +31,7 @@ from store.leasing import (
 )
 from store.models import Inspection, Task
 from store.records import Lease, Result
+from store.remaking import remake, vanished
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,11 @@ class Plan:
             if task_id is None:
                 return None
             now = self.db.now(session)
+            missing = vanished(session, session.get_one(Task, task_id))
+            if missing:
+                remake(session, inspection, missing)
+                self._go_on(session, inspection, now)
+                return None
             values = {
                 "state": "leased",
                 "fence": Task.fence + 1,
@@ -158,6 +164,18 @@ class Plan:
             self._go_on(session, inspection, now)
             return True
 
+    def remake(self, lease: Lease, keys: Collection[str]) -> bool:
+        """Give a task back because the files of these dependencies are gone, and have them made anew."""
+        with self.db.write() as session:
+            inspection, now = lock_inspection(session, lease.inspection_id), self.db.now(session)
+            task = _end(session, lease, now, "released")
+            if task is None:
+                return False
+            give_back(task, inspection, now, counts=False)
+            remake(session, inspection, keys)
+            self._go_on(session, inspection, now)
+            return True
+
     def expire(self) -> int:
         """The sweeper: free every task whose lease ran out; returns how many."""
         with self.db.read() as session:
@@ -171,6 +189,30 @@ class Plan:
         An empty prefix means all: the caller knows that nobody else works on this inspection.
         """
         return self._free(inspection_id, owner_prefix)
+
+    def take_over_all(self, owner_prefix: str) -> int:
+        """The same for every inspection: what a server does that starts again after a crash."""
+        with self.db.read() as session:
+            mine = Task.lease_owner.startswith(owner_prefix, autoescape=True)
+            ids = session.scalars(select(Task.inspection_id).where(Task.state == "leased", mine).distinct()).all()
+        return sum(self._free(inspection_id, owner_prefix) for inspection_id in ids)
+
+    def runnable(self) -> dict[str, int]:
+        """How many tasks could start now, by queue."""
+        with self.db.read() as session:
+            query = (
+                select(Task.queue, func.count())
+                .join(Inspection, Inspection.id == Task.inspection_id)
+                .where(Task.state == "runnable", Inspection.state.in_(LEASABLE))
+                .group_by(Task.queue)
+            )
+            return {queue: count for queue, count in session.execute(query)}  # noqa: C416 - rows are not plain tuples
+
+    def leased(self) -> set[str]:
+        """Fingerprints that somebody works on now."""
+        with self.db.read() as session:
+            query = select(Task.fingerprint).where(Task.state == "leased", Task.fingerprint.is_not(None))
+            return {fingerprint for fingerprint in session.scalars(query) if fingerprint}
 
     def _free(self, inspection_id: str, owner_prefix: str | None) -> int:
         """Free the expired leases of one inspection, or those of an owner when a prefix is given."""

@@ -9,9 +9,12 @@ import os
 import socket
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
+
+from tests.store.object_store import s3_server
 
 SERVICES = {
     "postgresql": ("BLADEATLAS_TEST_POSTGRESQL_URL", "postgresql://postgres@127.0.0.1:5432/test"),
@@ -75,3 +78,10 @@ def postgresql_url() -> str:
 @pytest.fixture
 def redis_url() -> str:
     return service_url("redis")
+
+
+@pytest.fixture(scope="session")
+def s3() -> Iterator[str]:
+    """Address of an S3 server."""
+    with s3_server() as address:
+        yield address

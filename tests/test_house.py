@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 import yaml
 
 from core.settings import PRESET_NAMES
+from store.settings import DeploymentSettings
 
 ROOT = Path(__file__).parents[1]
 MAX_LINES = 400
@@ -112,12 +114,19 @@ def normal(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def test_compose_starts_the_service_with_a_health_check() -> None:
-    compose = yaml.safe_load((ROOT / "docker-compose.yml").read_text())
-    assert set(compose["services"]) == {"api"}
-    api = compose["services"]["api"]
-    assert api["healthcheck"]["test"][0] == "CMD"
-    assert "/readyz" in api["healthcheck"]["test"][-1]
+def test_compose_starts_the_whole_system_with_health_checks() -> None:
+    services = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
+    assert set(services) == {"api", "worker", "worker-gpu", "postgres", "redis", "minio", "bucket"}
+    lasting = {name: service for name, service in services.items() if name != "bucket"}
+    assert all(service["healthcheck"]["test"][0] == "CMD" for service in lasting.values())
+    assert "/readyz" in services["api"]["healthcheck"]["test"][-1]
+    assert services["worker-gpu"]["profiles"] == ["gpu"]
+    known = {f"BLADEATLAS_{name}".upper() for name in DeploymentSettings.model_fields}
+    assert set(services["api"]["environment"]) <= known
+    json.loads(services["api"]["environment"]["BLADEATLAS_ARTIFACTS_OPTIONS"])
+
+
+def test_the_image_is_built_by_the_script_that_make_uses() -> None:
     dockerfile = (ROOT / "Dockerfile").read_text()
     assert "scripts/setup.sh" in dockerfile
     for copied in re.findall(r"^COPY (.*) \S+$", dockerfile, re.MULTILINE):

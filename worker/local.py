@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
 
 from core.errors import BladeAtlasError
+from worker.keeper import TICK_S, LeaseKeeper
 from worker.patience import patiently
-from worker.runner import Held, TaskRunner
+from worker.runner import TaskRunner
 
 T = TypeVar("T")
-
-_TICK_S = 0.5
-"""How soon a cancellation, the end of the plan or work of others is noticed."""
 
 
 @dataclass
@@ -39,7 +36,7 @@ class LocalRunners:
 
     def start(self) -> None:
         """Start all threads."""
-        targets: list[Callable[[], None]] = [self._keep_leases]
+        targets: list[Callable[[], None]] = [LeaseKeeper(self.runner, self.heartbeat_s, self._stop).run]
         targets += [partial(self._work, number) for number in range(self.workers)]
         for target in targets:
             thread = threading.Thread(target=self._guarded, args=(target,), daemon=True)
@@ -50,7 +47,7 @@ class LocalRunners:
         """Wait until `is_over` or until a thread failed; then all threads have ended."""
         while not self._stop.is_set() and not self._patiently(is_over):
             with self._woken:
-                self._woken.wait(_TICK_S)
+                self._woken.wait(TICK_S)
         self.stop()
 
     def stop(self) -> None:
@@ -89,33 +86,7 @@ class LocalRunners:
                 self.wake()
                 continue
             with self._woken:
-                self._woken.wait(_TICK_S)
-
-    def _keep_leases(self) -> None:
-        """Heartbeats, the sweeper, and word of cancellations."""
-        plan, next_beat = self.runner.plan, 0.0
-        while not self._stop.wait(_TICK_S):
-            held = list(self.runner.held.values())
-            self._patiently(partial(self._pass_on_cancellations, held))
-            if time.monotonic() >= next_beat:
-                next_beat = time.monotonic() + self.heartbeat_s
-                self._patiently(partial(self._beat, held))
-                self._patiently(plan.expire)
-
-    def _pass_on_cancellations(self, held: Sequence[Held]) -> None:
-        if held:
-            stopping = self.runner.plan.cancelling({one.lease.inspection_id for one in held})
-            for one in held:
-                if one.lease.inspection_id in stopping:
-                    one.stop = "cancelled"
-
-    def _beat(self, held: Sequence[Held]) -> None:
-        lost = self.runner.plan.heartbeat((one.lease, one.progress, one.message) for one in held)
-        gone = {lease.task_id for lease in lost}
-        for one in held:
-            # A task that ended meanwhile is no longer held, and its lease is not lost but over.
-            if one.lease.task_id in gone and self.runner.held.get(one.lease.task_id) is one:
-                one.stop = "lost"
+                self._woken.wait(TICK_S)
 
 
 def raise_failure(failure: BaseException | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import select
 import signal
@@ -42,9 +43,12 @@ class Ended:
 class TaskProcess:
     """One run of `worker.child`."""
 
-    def __init__(self, spec: Mapping[str, Any], log: Path, memory_limit_bytes: int = 0) -> None:
+    def __init__(
+        self, spec: Mapping[str, Any], log: Path, memory_limit_bytes: int = 0, limit_s: float = math.inf
+    ) -> None:
         self._key = str(spec["key"])
         self._limit = memory_limit_bytes
+        self._limit_s = limit_s
         self._oom_kills = _kernel_oom_kills()
         self._last: dict[str, Any] = {}
         self._buffer = b""
@@ -77,20 +81,20 @@ class TaskProcess:
     def wait(self, on_progress: Callable[[float, str], None], stop: Callable[[], StopReason]) -> Ended:
         """Listen until the tree has ended; asks `stop` a few times a second whether to end it early."""
         reason: StopReason = ""
-        oom = False
+        beyond: ResourceError | None = None
         try:
             while not self._over():
                 self._listen(on_progress)
                 reason = stop()
-                oom = self._limit > 0 and self._resident() > self._limit
-                if reason or oom:
+                beyond = self._beyond_limits()
+                if reason or beyond:
                     self._terminate()
                     break
         finally:
             seconds, rusage_peak = time.monotonic() - self._started, self._reap()
         self._drain(on_progress)
         os.close(self._read)
-        error = None if reason else self._error(oom)
+        error = None if reason else beyond or self._error()
         return Ended(error, reason, round(seconds, 3), max(self._peak, rusage_peak))
 
     def _over(self) -> bool:
@@ -146,10 +150,16 @@ class TaskProcess:
         self._peak = max(self._peak, total)
         return total
 
-    def _error(self, over_limit: bool) -> BladeAtlasError | None:
-        if over_limit:
+    def _beyond_limits(self) -> ResourceError | None:
+        if time.monotonic() - self._started > self._limit_s:
+            message = f"the task ran longer than its limit of {self._limit_s:g} s"
+            return ResourceError(message, code="timeout", where=self._key)
+        if self._limit > 0 and self._resident() > self._limit:
             limit = f"{self._limit / 2**20:.0f} MiB"
             return ResourceError(f"the task used more memory than its limit of {limit}", code="oom", where=self._key)
+        return None
+
+    def _error(self) -> BladeAtlasError | None:
         if "error" in self._last:
             return error_from_dict(self._last["error"])
         if "done" in self._last:

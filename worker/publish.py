@@ -1,13 +1,11 @@
-"""Publishing: what a run reached, under the names of the contract, each file whole or not at all.
-
-Files first, tables then, `summary.json` last. What an earlier run published and this one did not is removed.
-"""
+"""What a run that ended publishes, whatever it reached: files of its results and tables of its report."""
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +16,49 @@ from core.report.record import RunRecord, RunState, TaskRecord, TaskState
 from core.settings import Settings
 from core.stage import Facts
 from core.versions import all_versions
-from store.artifacts import ArtifactStore, Stored
 from store.records import InspectionView, TaskView
 from worker.results import MANIFEST, ResultFolders
 from worker.rows import defect_rows
 
-_LIST = "published.json"
+
+@dataclass(frozen=True)
+class Collection:
+    """What a run publishes, by path of the contract."""
+
+    report: Report
+    files: Mapping[str, Path]
+    """Files of results, which never change."""
+    tables: Mapping[str, Path]
+    """Written for this report; `summary.json` last, its presence says that everything else is there."""
+
+
+class Folders(Mapping[str, Path]):
+    """Result folder of every finished task by key, brought here only when it is asked for."""
+
+    def __init__(self, tasks: Sequence[TaskView], results: ResultFolders) -> None:
+        self._paths = {task.key: task.path for task in tasks if task.path is not None}
+        self._results = results
+
+    def __getitem__(self, key: str) -> Path:
+        path = self._paths[key]
+        self._results.have(path)
+        return self._results.path(path)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._paths
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._paths)
+
+    def __len__(self) -> int:
+        return len(self._paths)
 
 
 def record_of(
     inspection: InspectionView, tasks: Sequence[TaskView], results: ResultFolders
-) -> tuple[RunRecord, dict[str, Path]]:
-    """The run as the report wants it, and the result folder of every finished task by key."""
-    folders = {task.key: results.path(task.path) for task in tasks if task.path is not None}
+) -> tuple[RunRecord, Folders]:
+    """The run as the report wants it, and the result folders of its finished tasks."""
+    folders = Folders(tasks, results)
     error = dict(inspection.error or {})
     states: tuple[RunState, ...] = ("succeeded", "partial", "cancelled")
     state: RunState = next((known for known in states if known == inspection.state), "failed")
@@ -77,34 +105,16 @@ def report_rows(report: Report) -> dict[str, Any]:
     }
 
 
-def publish(record: RunRecord, folders: Mapping[str, Path], out: Path, hidden: Path) -> Report:
-    """Write the published folder of a run that ended.
-
-    Args:
-        folders: result folder of every finished task by key.
-        out: the published folder.
-        hidden: this program's own folder inside it, on the same disk.
-    """
+@contextmanager
+def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> Iterator[Collection]:
+    """Everything that a run publishes; its tables lie below the folder `scratch` as long as the block lasts."""
     report = build_report(record)
-    store = ArtifactStore(out)
-    known = _load(hidden / _LIST)
     facts = {task.key: task.facts for task in record.tasks if task.state == "succeeded"}
-    wanted = dict(_files(folders, facts, trusted=report.verdict != "refused"))
-    # Its presence says that everything else is of one run, so it goes first and comes last.
-    store.remove("summary.json")
-    published = {path: _put(store, out, path, source, known.get(path)) for path, source in wanted.items()}
-    # Listed before anything is removed or the tables are written: a crash in between forgets no file.
-    _save(hidden / _LIST, {**known, **published})
-    with tempfile.TemporaryDirectory(prefix="tables-", dir=hidden) as folder:
+    files = dict(_files(folders, facts, trusted=report.verdict != "refused"))
+    scratch.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="tables-", dir=scratch) as folder:
         write_tables(report, Path(folder))
-        for path in TABLES:
-            stored = store.put(path, Path(folder) / path)
-            published[path] = {"size": stored.size, "sha256": stored.sha256}
-    for path in sorted(set(known) - set(published)):
-        store.remove(path)
-        _remove_empty(out, (out / path).parent)
-    _save(hidden / _LIST, published)
-    return report
+        yield Collection(report, files, {path: Path(folder) / path for path in TABLES})
 
 
 def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:
@@ -126,37 +136,3 @@ def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Fac
         if folder is not None and (folder / inner).exists():
             return folder / inner
     return None
-
-
-def _put(store: ArtifactStore, out: Path, path: str, source: Path, known: Mapping[str, Any] | None) -> dict[str, Any]:
-    """Copy a file unless the very same is there; a copy, because people edit what lies in their folder."""
-    target = out / path
-    origin = str(source.relative_to(out)) if source.is_relative_to(out) else str(source)
-    if known and known.get("origin") == origin and target.is_file() and known.get("mtime_ns") == _mtime(target):
-        return dict(known)
-    stored: Stored = store.put(path, source)
-    return {"size": stored.size, "sha256": stored.sha256, "origin": origin, "mtime_ns": _mtime(target)}
-
-
-def _mtime(path: Path) -> int:
-    return path.stat().st_mtime_ns
-
-
-def _remove_empty(out: Path, folder: Path) -> None:
-    while folder != out and folder.is_dir() and not any(folder.iterdir()):
-        folder.rmdir()
-        folder = folder.parent
-
-
-def _load(path: Path) -> dict[str, dict[str, Any]]:
-    if not path.is_file():
-        return {}
-    known: dict[str, dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))
-    return known
-
-
-def _save(path: Path, published: Mapping[str, Mapping[str, Any]]) -> None:
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(published, sort_keys=True, indent=1), encoding="utf-8")
-    ArtifactStore(path.parent).put(path.name, part)
-    part.unlink()

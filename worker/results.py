@@ -10,8 +10,10 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +25,8 @@ from store.disk import disk_is_full, sync_path
 
 MANIFEST = "result.json"
 _TEMP = ".tmp-"
+_SHORT = 16
+"""Characters of the fingerprint in the name of a temporary folder."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,13 @@ class Manifest:
     peak_rss_bytes: int
     key: str
     """Task that computed it first."""
+
+
+def age_s(folder: Path) -> float:
+    """Seconds since a name was added to or taken from a folder; 0 when it has just gone."""
+    with suppress(FileNotFoundError):
+        return max(0.0, time.time() - folder.stat().st_mtime)
+    return 0.0
 
 
 def seal(folder: Path, *, fingerprint: str, key: str, version: int, facts: Facts, seconds: float, rss: int) -> Manifest:
@@ -86,17 +97,14 @@ class ResultFolders:
 
     def begin(self, stage: str, fingerprint: str) -> Path:
         """A new empty temporary folder for one attempt."""
-        folder = self.root / stage / f"{_TEMP}{fingerprint[:16]}-{uuid.uuid4().hex[:12]}"
+        folder = self.root / stage / f"{_TEMP}{fingerprint[:_SHORT]}-{uuid.uuid4().hex[:12]}"
         folder.mkdir(parents=True)
         return folder
 
     def commit(self, temporary: Path, stage: str, fingerprint: str) -> Manifest:
         """Turn a sealed temporary folder into the result; the first of two equal results stays."""
-        final = self.root / stage / fingerprint
         if self.find(stage, fingerprint) is None:
-            self._remove(final)
-            temporary.rename(final)
-            sync_path(final.parent)
+            self._keep(temporary, stage, fingerprint)
         self.discard(temporary)
         manifest = self.find(stage, fingerprint)
         if manifest is None:
@@ -117,24 +125,54 @@ class ResultFolders:
             return None
         return manifest if whole and manifest.fingerprint == fingerprint else None
 
+    def have(self, relative: str | os.PathLike[str]) -> bool:
+        """True when a result's folder is there to be read."""
+        return self.path(relative).is_dir()
+
     def all(self) -> Iterator[Manifest]:
         """Every usable result on disk."""
         for path in sorted(self.root.glob(f"*/*/{MANIFEST}")):
             if not path.parent.name.startswith(_TEMP):
-                manifest = self.find(path.parent.parent.name, path.parent.name)
+                manifest = ResultFolders.find(self, path.parent.parent.name, path.parent.name)
                 if manifest is not None:
                     yield manifest
 
-    def sweep(self) -> int:
-        """Remove temporary folders; only while nobody else works below this root. Returns how many."""
-        stale = list(self.root.glob(f"*/{_TEMP}*"))
+    def temporary(self) -> list[Path]:
+        """Temporary folders: of attempts that run, and of those that a crash cut off."""
+        return list(self.root.glob(f"*/{_TEMP}*"))
+
+    def sweep(self, in_use: Callable[[], Collection[str]] = tuple, older_than_s: float = 0.0) -> int:
+        """Remove temporary folders, but those of the fingerprints that `in_use` names; returns how many.
+
+        `in_use` is asked after the folders were listed: an attempt has its lease before its folder.
+        """
+        listed = [folder for folder in self.temporary() if age_s(folder) >= older_than_s]
+        kept = tuple(f"{_TEMP}{fingerprint[:_SHORT]}-" for fingerprint in in_use())
+        stale = [folder for folder in listed if not folder.name.startswith(kept)]
         for folder in stale:
             shutil.rmtree(folder, ignore_errors=True)
         return len(stale)
 
+    def unknown(self, known: Callable[[], Collection[str]], older_than_s: float) -> list[str]:
+        """Relative paths of results whose fingerprint `known` does not name: a crash cut their story off."""
+        listed = [path.parent for path in self.root.glob(f"*/*/{MANIFEST}") if not path.parent.name.startswith(_TEMP)]
+        names = known()
+        unknown = [folder for folder in listed if folder.name not in names and age_s(folder) >= older_than_s]
+        return [self.relative(folder.parent.name, folder.name) for folder in unknown]
+
     def remove(self, stage: str, fingerprint: str) -> None:
         """Remove a result."""
         self._remove(self.root / stage / fingerprint)
+
+    def _keep(self, temporary: Path, stage: str, fingerprint: str) -> None:
+        """Give a whole folder its final name; who does so first wins, and both are equal."""
+        final = self.root / stage / fingerprint
+        if ResultFolders.find(self, stage, fingerprint) is None:
+            self._remove(final)
+            # A folder that another process puts there in this moment is whole, and not empty: this fails.
+            with suppress(OSError):
+                temporary.rename(final)
+            sync_path(final.parent)
 
     def _remove(self, folder: Path) -> None:
         # Renamed first: a crash in the middle leaves a temporary folder, never half a result.

@@ -25,8 +25,10 @@ from store.records import InputFiles, InspectionView, TaskView
 from store.settings import DeploymentSettings, available_cores
 from worker.folder import RunFolder, locked
 from worker.local import LocalRunners, raise_failure
+from worker.logs import TaskLogs
 from worker.outcome import OnEvent, Outcome, OutcomeState, StageOutcome
-from worker.publish import publish, record_of, report_rows
+from worker.publish import record_of, report_rows
+from worker.publish_folder import publish
 from worker.reporter import Reporter
 from worker.results import ResultFolders
 from worker.runner import TaskRunner, result_of
@@ -122,8 +124,14 @@ class _Run:
         self._inspections = Inspections(database, graph)
         self._plan = Plan(database, graph, deployment.lease_s, deployment.max_attempts)
         self._reporter = Reporter(Tracker(graph, workers), lambda: self._inspections.tasks(_LOCAL), on_event)
-        limit = deployment.task_memory_bytes
-        runner = TaskRunner(self._plan, self._results, folder.logs, self._reporter, memory_limit_bytes=limit)
+        runner = TaskRunner(
+            self._plan,
+            self._results,
+            TaskLogs(folder.logs),
+            self._reporter,
+            memory_limit_bytes=deployment.task_memory_bytes,
+            limit_s=deployment.task_seconds,
+        )
         owner = f"run:{os.getpid()}"
         self._runners = LocalRunners(runner, owner, workers, deployment.heartbeat_s, inspection_id=_LOCAL)
 

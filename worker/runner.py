@@ -5,26 +5,33 @@ Local runs and embedded servers use these threads; a queue's task calls `TaskRun
 
 from __future__ import annotations
 
-import json
+import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from core.errors import BladeAtlasError, DiskFull, ResourceError, StageFailed
+from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
+from store.artifacts import UNREACHABLE
 from store.disk import NO_SPACE
+from store.inputs import LocalInputs
+from store.json_log import logger
 from store.plan import Plan
 from store.records import Lease, Result
 from store.settings import available_cores
+from worker.logs import TaskLogs
 from worker.patience import patiently
 from worker.process import Ended, StopReason, TaskProcess
 from worker.results import Manifest, ResultFolders
 from worker.rows import rows_of
 
 T = TypeVar("T")
+_log = logger("bladeatlas.tasks")
+_SAME_AGAIN = ("oom", "timeout")
+"""Codes of errors that a second attempt would meet again, after the same time and to the same harm of others."""
+_STORE_PAUSE_S = 5.0
 
 
 class Observer(Protocol):
@@ -56,9 +63,12 @@ class TaskRunner:
 
     plan: Plan
     results: ResultFolders
-    logs: Path
+    logs: TaskLogs
     observer: Observer
+    inputs: LocalInputs = field(default_factory=LocalInputs)
     memory_limit_bytes: int = 0
+    limit_s: float = math.inf
+    """A task that runs longer is ended."""
     interrupted: threading.Event = field(default_factory=threading.Event)
     held: dict[int, Held] = field(default_factory=dict)
 
@@ -70,11 +80,12 @@ class TaskRunner:
         error: BladeAtlasError | None = None
         try:
             outcome, error = self._execute(held)
-        except OSError as failure:
+        except (OSError, BladeAtlasError) as failure:
             error = _as_expected(failure, lease.key)
-            outcome = self._fail(lease, error, 0.0, 0)
+            outcome = self._give_up(held, error)
         finally:
             self.held.pop(lease.task_id, None)
+        self._end_log(lease, outcome)
         self.observer.ended(lease, outcome, error)
         return outcome
 
@@ -85,6 +96,11 @@ class TaskRunner:
         if finished is not None:
             accepted = self._complete(lease, finished, finished.peak_rss_bytes) == "succeeded"
             return "reused" if accepted else "refused", None
+        missing = [key for key, path in lease.inputs.items() if not self.results.have(path)]
+        if missing:
+            _log.warning("results_vanished", **ids(lease), missing=missing)
+            remade = self._patiently(lambda: self.plan.remake(lease, missing))
+            return "released" if remade else "refused", None
         temporary = self.results.begin(lease.stage, lease.fingerprint)
         try:
             ended = self._in_child(held, temporary)
@@ -100,11 +116,8 @@ class TaskRunner:
 
     def _in_child(self, held: Held, temporary: Path) -> Ended:
         lease = held.lease
-        missing = [key for key, path in lease.inputs.items() if not self.results.path(path).is_dir()]
-        if missing:
-            error = StageFailed(f"the result of {missing[0]} has vanished; run again to make it anew", where=lease.key)
-            return Ended(error, "", 0.0, 0)
-        process = TaskProcess(self._spec(lease, temporary), self._log(lease), self.memory_limit_bytes)
+        spec = self._spec(lease, temporary)
+        process = TaskProcess(spec, self.logs.begin(lease), self.memory_limit_bytes, self.limit_s)
 
         def progress(fraction: float, message: str) -> None:
             held.progress, held.message = fraction, message
@@ -112,19 +125,17 @@ class TaskRunner:
 
         return process.wait(progress, lambda: "interrupted" if self.interrupted.is_set() else held.stop)
 
-    def _log(self, lease: Lease) -> Path:
-        """The task's log; a first attempt begins it anew. Who writes to it is said in its own lines."""
-        self.logs.mkdir(parents=True, exist_ok=True)
-        path = self.logs / f"{lease.key.replace('/', '__')}.log"
-        names = ("inspection_id", "key", "attempt", "fence", "fingerprint", "owner")
-        line = {"event": "attempt_started", **{name: getattr(lease, name) for name in names}}
-        with path.open("w" if lease.attempt == 1 else "a", encoding="utf-8") as stream:
-            stream.write(json.dumps({"time": datetime.now(UTC).isoformat(timespec="milliseconds"), **line}) + "\n")
-        return path
+    def _end_log(self, lease: Lease, outcome: str) -> None:
+        try:
+            self.logs.end(lease, outcome)
+        except (OSError, BladeAtlasError) as failure:
+            # The result is committed: a log that cannot be kept must not undo that.
+            _log.warning("task_log_not_kept", **ids(lease), reason=str(failure))
 
     def _spec(self, lease: Lease, temporary: Path) -> dict[str, Any]:
         stage = self.plan.graph.stages[lease.stage]
         settings = Settings.model_validate(lease.settings)
+        annotations = self.inputs.annotations(lease.files, needed=stage.reads_annotations)
         return {
             "key": lease.key,
             "entry": stage.entry,
@@ -134,8 +145,8 @@ class TaskRunner:
             "settings": dict(lease.settings),
             "inputs": {key: str(self.results.path(path)) for key, path in lease.inputs.items()},
             "facts": {key: dict(facts) for key, facts in lease.facts.items()},
-            "video": lease.files.video,
-            "annotations": lease.files.annotations,
+            "video": str(self.inputs.video(lease.files, needed=stage.reads_video)),
+            "annotations": str(annotations) if annotations else None,
             "out": str(temporary),
             "threads": 1 if stage.fan_out else settings.compute.threads or available_cores(),
         }
@@ -147,9 +158,17 @@ class TaskRunner:
     def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> str:
         # A full disk would fail every other task as well, and tolerating it would spoil the result unseen.
         record = {**error.to_dict(), "stops_run": isinstance(error, DiskFull)}
+        retry = error.retryable and error.code not in _SAME_AGAIN
         return self._patiently(
-            lambda: self.plan.fail(lease, record, retry=error.retryable, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
+            lambda: self.plan.fail(lease, record, retry=retry, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
         )
+
+    def _give_up(self, held: Held, error: BladeAtlasError) -> str:
+        if error.code != UNREACHABLE:
+            return self._fail(held.lease, error, 0.0, 0)
+        # Nobody's fault but the store's, and what was computed is kept here: again when it answers.
+        self.interrupted.wait(_STORE_PAUSE_S)
+        return self._release(held, "interrupted")
 
     def _release(self, held: Held, why: StopReason) -> str:
         if why == "lost":
@@ -160,8 +179,15 @@ class TaskRunner:
         return patiently(self.plan.db, call, self.interrupted)
 
 
-def _as_expected(failure: OSError, key: str) -> BladeAtlasError:
+def ids(lease: Lease) -> dict[str, str | int]:
+    """What every log line about a lease names."""
+    return {"inspection": lease.inspection_id, "stage": lease.key, "attempt": lease.attempt}
+
+
+def _as_expected(failure: OSError | BladeAtlasError, key: str) -> BladeAtlasError:
     """What a failure of the runner's own work on files and processes means."""
+    if isinstance(failure, BladeAtlasError):
+        return failure
     if failure.errno in NO_SPACE:
         return DiskFull(f"the results folder cannot be written: {failure.strerror}", where=key)
     return ResourceError(f"the task could not be started or kept: {failure}", where=key)

@@ -31,8 +31,8 @@ def upgrade() -> None:
 
 def downgrade() -> None:
     """Drop them."""
-    for table in ("workers", "idempotency_keys", "api_keys", "artifacts", "uploads"):
-        op.drop_table(table)
+    for dropped in ("workers", "idempotency_keys", "api_keys", "artifacts", "uploads"):
+        op.drop_table(dropped)
     with op.batch_alter_table("inspections") as table:
         for name in _INDEXED:
             table.drop_index(f"ix_inspections_{name}")
@@ -54,6 +54,7 @@ def _inspection_columns() -> list[sa.Column[Any]]:
         sa.Column("publish_expires_at", sa.DateTime(), nullable=True),
         sa.Column("expires_at", sa.DateTime(), nullable=True),
         sa.Column("deleted_at", sa.DateTime(), nullable=True),
+        sa.Column("purged_at", sa.DateTime(), nullable=True),
     ]
 
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 from datetime import timedelta
 
 import pytest
-from sqlalchemy import select, update
+from sqlalchemy import delete, select, update
 
 from core.errors import BadInput, ResourceError, StageFailed
 from core.settings import make_settings
 from store.db import Database
 from store.inspections import Inspections
-from store.models import Attempt, CaseRow, DetectionRow, MetricRow, Task
+from store.models import Attempt, CaseRow, DetectionRow, MetricRow, Result, Task
 from store.plan import Plan
 from store.records import Lease
 from tests.store.small_plan import FILES, GRAPH, result_for
@@ -324,6 +324,29 @@ def test_a_failed_transaction_leaves_nothing_behind(plan: Plan) -> None:
         plan.complete(lease, broken)
     assert inspections(plan).known_results() == {}
     assert plan.complete(lease, result_for(lease))
+
+
+def test_results_that_vanished_are_made_anew_and_the_plan_goes_on(plan: Plan) -> None:
+    for key in ("split", "part/0", "part/1"):
+        finish(plan, key)
+    with plan.db.write() as session:
+        session.execute(delete(Result))
+    assert plan.lease("me") is None
+    assert states(plan) == {"split": "runnable", "part/0": "succeeded", "part/1": "succeeded", "part/2": "waiting"} | {
+        "join": "waiting",
+        "last": "waiting",
+    }
+    finish(plan, "split")
+    finish(plan, "part/2")
+    assert plan.lease("me") is None
+    finish(plan, "part/0")
+    finish(plan, "part/1")
+    lease = take(plan, "join")
+    # The rows are there, but the runner found the files of one gone.
+    assert plan.remake(lease, ["part/2"])
+    assert not plan.remake(lease, ["part/2"])
+    assert finish_all(plan) == ["part/2", "join", "last"]
+    assert inspections(plan).get(ID).state == "succeeded"
 
 
 def test_an_unknown_inspection_is_said(plan: Plan) -> None:

@@ -22,6 +22,7 @@ from tests.databases import BOTH, database
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, SMALL
 from worker.local import LocalRunners
+from worker.logs import TaskLogs
 from worker.results import ResultFolders
 from worker.runner import TaskRunner
 
@@ -62,7 +63,9 @@ class Server:
 
     def runners(self, lease_s: float = 30.0, heartbeat_s: float = 10.0, workers: int = 2) -> LocalRunners:
         plan = Plan(self.db, GRAPH, lease_s=lease_s)
-        runner = TaskRunner(plan, ResultFolders(self.place.out / "results"), self.place.out / "logs", self.notes)
+        runner = TaskRunner(
+            plan, ResultFolders(self.place.out / "results"), TaskLogs(self.place.out / "logs"), self.notes
+        )
         return LocalRunners(runner, "server", workers, heartbeat_s)
 
     def states(self) -> list[str]:

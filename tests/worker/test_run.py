@@ -175,7 +175,7 @@ def facts(place: Workplace, stage: str) -> dict[str, float]:
     [
         ("no_reconstruction", "no_reconstruction", 1),
         ("bug", "internal", 1),
-        ("memory", "oom", 3),
+        ("memory", "oom", 1),
     ],
 )
 def test_errors_end_a_run_with_their_code_after_their_attempts(
@@ -227,12 +227,22 @@ def test_a_failure_with_something_to_serve_is_partial(place: Workplace) -> None:
 
 def test_a_task_above_its_memory_limit_is_ended_as_oom(place: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BLADEATLAS_TASK_MEMORY_BYTES", str(300 << 20))
-    monkeypatch.setenv("BLADEATLAS_MAX_ATTEMPTS", "1")
     place.control(part__001={"megabytes": 500})
     outcome = place.run()
     assert outcome.state == "succeeded"
+    assert place.started().count("part/001") == 1
     failed = [event for event in place.events if event.kind == "ended" and event.state == "failed"]
     assert [(event.key, "300 MiB" in event.message) for event in failed] == [("part/001", True)]
+
+
+def test_a_task_above_its_time_limit_is_ended_as_timeout(place: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BLADEATLAS_TASK_SECONDS", "2.5")
+    place.control(last={"sleep_s": 30, "deaf": True})
+    outcome = place.run()
+    assert (outcome.state, outcome.failed_stage) == ("partial", "last")
+    assert outcome.error is not None
+    assert (outcome.error.code, outcome.error.message) == ("timeout", "the task ran longer than its limit of 2.5 s")
+    assert place.started().count("last") == 1
 
 
 def test_results_whose_files_vanished_are_made_again(place: Workplace) -> None:

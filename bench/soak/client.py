@@ -1,0 +1,113 @@
+"""A client that never gives up: resumes uploads and downloads, repeats requests, checks every hash."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import httpx
+
+T = TypeVar("T")
+_PATIENCE_S = 120.0
+_PAUSE_S = 0.3
+_TUS = {"Tus-Resumable": "1.0.0"}
+OVER = ("succeeded", "partial", "failed", "cancelled")
+
+
+class SoakClient:
+    """Speaks the HTTP API of one server that may be away at any moment."""
+
+    def __init__(self, url: str) -> None:
+        self._http = httpx.Client(base_url=url, timeout=10.0)
+
+    def submit(self, name: str, video: Path, annotations: Path, parameters: dict[str, Any]) -> str:
+        """Upload both files resumably and create an inspection; returns its id."""
+        body = {
+            "video_upload": self._upload(video),
+            "annotations_upload": self._upload(annotations),
+            "parameters": {**parameters, "external_id": name},
+        }
+        made = self._send(lambda: self._http.post("/v1/inspections", json=body, headers={"Idempotency-Key": name}))
+        return str(made.json()["id"])
+
+    def resource(self, inspection_id: str) -> dict[str, Any]:
+        """The inspection as it stands."""
+        found: dict[str, Any] = self._send(lambda: self._http.get(f"/v1/inspections/{inspection_id}")).json()
+        return found
+
+    def wait(self, inspection_id: str, seconds: float) -> dict[str, Any]:
+        """The inspection once it is over; `TimeoutError` when it is not in time."""
+        deadline = time.monotonic() + seconds
+        while (found := self.resource(inspection_id))["state"] not in OVER:
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"inspection {inspection_id} is still {found['state']}")
+            time.sleep(_PAUSE_S)
+        return found
+
+    def download(self, inspection_id: str, folder: Path) -> list[str]:
+        """Fetch every artifact, going on after every cut; returns paths whose hash is wrong."""
+        listed = self._send(lambda: self._http.get(f"/v1/inspections/{inspection_id}/artifacts")).json()["artifacts"]
+        wrong = []
+        for item in listed:
+            target = folder / item["path"]
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.unlink(missing_ok=True)
+            _patiently(lambda item=item, target=target: self._fetch(item, target))  # type: ignore[misc]
+            if hashlib.sha256(target.read_bytes()).hexdigest() != item["sha256"]:
+                wrong.append(str(item["path"]))
+        return wrong
+
+    def _fetch(self, item: dict[str, Any], target: Path) -> bool:
+        have = target.stat().st_size if target.exists() else 0
+        if have and have >= item["size"]:
+            return True
+        headers = {"Range": f"bytes={have}-", "If-Range": f'"{item["sha256"]}"'} if have else {}
+        with self._http.stream("GET", item["link"], headers=headers) as answer:
+            answer.raise_for_status()
+            with target.open("ab" if answer.status_code == httpx.codes.PARTIAL_CONTENT else "wb") as write:
+                for chunk in answer.iter_bytes():
+                    write.write(chunk)
+        return True
+
+    def _upload(self, path: Path) -> str:
+        data = path.read_bytes()
+        headers = {**_TUS, "Upload-Length": str(len(data))}
+        made = self._send(lambda: self._http.post("/v1/uploads", headers=headers))
+        location = made.headers["Location"]
+        _patiently(lambda: self._go_on(location, data))
+        return str(location).rsplit("/", 1)[-1]
+
+    def _go_on(self, location: str, data: bytes) -> bool:
+        """Send the rest of an upload, from wherever the server has got to."""
+        head = self._http.head(location, headers=_TUS)
+        head.raise_for_status()
+        offset = int(head.headers["Upload-Offset"])
+        if offset < len(data):
+            headers = {**_TUS, "Upload-Offset": str(offset), "Content-Type": "application/offset+octet-stream"}
+            self._http.patch(location, headers=headers, content=data[offset:]).raise_for_status()
+        return True
+
+    def _send(self, request: Callable[[], httpx.Response]) -> httpx.Response:
+        def checked() -> httpx.Response:
+            return request().raise_for_status()
+
+        return _patiently(checked)
+
+
+def _patiently(call: Callable[[], T]) -> T:
+    """Repeat what a server that is away, busy or restarting did not answer."""
+    deadline = time.monotonic() + _PATIENCE_S
+    while True:
+        try:
+            return call()
+        except httpx.HTTPStatusError as error:
+            refused = error.response.status_code < httpx.codes.INTERNAL_SERVER_ERROR
+            if (refused and error.response.status_code not in (409, 423, 429)) or time.monotonic() > deadline:
+                raise
+        except httpx.TransportError:
+            if time.monotonic() > deadline:
+                raise
+        time.sleep(_PAUSE_S)

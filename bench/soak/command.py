@@ -1,0 +1,76 @@
+"""`bladeatlas-bench soak`: run it, print a table, keep the figures as JSON."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from dataclasses import asdict
+from pathlib import Path
+
+from bench.soak.run import Outcome, SoakSettings, disturbed, undisturbed
+from core.errors import StageFailed
+
+_DEFAULTS = SoakSettings(Path("samples/turbine.mp4"), Path("samples/turbine.json"))
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Everything that a soak can be told."""
+    parser.add_argument(
+        "out", type=Path, metavar="DIR", help="folder for everything; the undisturbed run in it is kept"
+    )
+    parser.add_argument("--video", type=Path, default=_DEFAULTS.video, help="clip of every job")
+    parser.add_argument("--annotations", type=Path, default=_DEFAULTS.annotations)
+    parser.add_argument("--toy", action="store_true", help="stages that only take a moment: a minute instead of hours")
+    for name, text in (
+        ("jobs", "jobs"),
+        ("faults", "faults"),
+        ("workers", "worker processes"),
+        ("seed", "of the faults"),
+    ):
+        parser.add_argument(f"--{name}", type=int, default=getattr(_DEFAULTS, name), metavar="N", help=text)
+    parser.add_argument("--pause-s", type=float, default=_DEFAULTS.pause_s, help="mean time between faults")
+    parser.add_argument("--preset", default=_DEFAULTS.preset)
+
+
+def command(arguments: argparse.Namespace) -> None:
+    """Run both deployments; StageFailed when anything is not as it must be."""
+    names = ("jobs", "faults", "workers", "seed", "toy", "pause_s", "preset")
+    settings = SoakSettings(
+        arguments.video.resolve(),
+        arguments.annotations.resolve(),
+        **{name: getattr(arguments, name) for name in names},
+    )
+    out = arguments.out.resolve()
+    kind = f"{'toy' if settings.toy else settings.preset}-{settings.jobs}"
+    reference = undisturbed(settings, out / f"undisturbed-{kind}")
+    found = disturbed(settings, out / f"disturbed-{kind}", out / f"undisturbed-{kind}")
+    report = {"schema_version": 1, "undisturbed": asdict(reference), "disturbed": asdict(found)}
+    (out / "soak.json").write_text(json.dumps(report, indent=1), encoding="utf-8")
+    print(table(settings, reference, found))
+    if reference.wrong or found.wrong:
+        raise StageFailed("the soak found what must not be; see the table and soak.json", where="soak")
+
+
+def table(settings: SoakSettings, reference: Outcome, found: Outcome) -> str:
+    """The figures in a few lines of Markdown."""
+    faults = ", ".join(f"{name} {count}" for name, count in sorted(Counter(found.faults).items()))
+    rows = [
+        ("jobs that succeeded", _succeeded(reference), _succeeded(found)),
+        ("seconds", f"{reference.seconds:g}", f"{found.seconds:g}"),
+        ("faults", "0", f"{len(found.faults)} of {settings.faults}: {faults}"),
+        ("messages delivered twice", "0", str(found.duplicates)),
+        ("attempts", _counts(reference.attempts), _counts(found.attempts)),
+        ("wrong", str(len(reference.wrong)), str(len(found.wrong))),
+    ]
+    lines = ["| | undisturbed | with faults |", "| --- | --- | --- |"]
+    lines += [f"| {name} | {one} | {other} |" for name, one, other in rows]
+    return "\n".join([*lines, *(f"- {wrong}" for wrong in (*reference.wrong, *found.wrong))])
+
+
+def _succeeded(outcome: Outcome) -> str:
+    return f"{sum(state == 'succeeded' for state in outcome.states.values())} of {len(outcome.states)}"
+
+
+def _counts(counts: dict[str, int]) -> str:
+    return ", ".join(f"{name} {count}" for name, count in counts.items())

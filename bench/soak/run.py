@@ -1,0 +1,176 @@
+"""One deployment, its jobs, and what comes of them: once undisturbed, once with faults."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from bench.soak import audit
+from bench.soak.client import SoakClient
+from bench.soak.compare import differences
+from bench.soak.faults import Duplicates, Faults
+from bench.soak.fleet import Fleet
+from bench.soak.servers import PostgresServer, RedisServer
+from store.db import Database
+
+_CORE, _TOY = "store.graph:CORE_GRAPH", "bench.soak.toy:GRAPH"
+
+
+@dataclass(frozen=True)
+class SoakSettings:
+    """What a soak does; everything that its result depends on."""
+
+    video: Path
+    annotations: Path
+    jobs: int = 10
+    faults: int = 50
+    workers: int = 2
+    pause_s: float = 8.0
+    """Mean time between two faults."""
+    preset: str = "draft"
+    seed: int = 0
+    toy: bool = False
+    lease_s: float = 5.0
+    job_s: float = 3600.0
+    """A job that takes longer is lost."""
+
+    def environment(self, redis: RedisServer, postgres: PostgresServer) -> dict[str, str]:
+        """Of every process under test."""
+        values = {
+            "BROKER_URL": redis.url,
+            "DATABASE_URL": postgres.url,
+            "GRAPH": _TOY if self.toy else _CORE,
+            "HEARTBEAT_S": str(self.lease_s / 4),
+            "LEASE_S": str(self.lease_s),
+            # Faults fall on the same task more often here than a task that is at fault itself would need.
+            "MAX_ATTEMPTS": "100",
+            "MAX_ACTIVE": str(self.jobs + 10),
+            "STALE_S": "5",
+            "SWEEP_S": "1",
+        }
+        return {f"BLADEATLAS_{name}": value for name, value in values.items()}
+
+    def parameters(self, job: int) -> dict[str, Any]:
+        """Of one job; no two share a result, so every job is computed."""
+        options = {"features.max_keypoints": 2000 + 10 * job, "compute.threads": 1, "seed": 0}
+        return {"preset": self.preset, "options": options, "label": "soak"}
+
+
+@dataclass
+class Outcome:
+    """What one deployment came to."""
+
+    states: dict[str, str] = field(default_factory=dict)
+    seconds: float = 0.0
+    faults: list[str] = field(default_factory=list)
+    duplicates: int = 0
+    attempts: dict[str, int] = field(default_factory=dict)
+    wrong: list[str] = field(default_factory=list)
+    """Everything that is not as it must be; empty when the soak is passed."""
+
+
+def undisturbed(settings: SoakSettings, folder: Path) -> Outcome:
+    """Run all jobs without a fault; an earlier run of the same is taken as it is."""
+    done = folder / "outcome.json"
+    if done.is_file():
+        return Outcome(**json.loads(done.read_text(encoding="utf-8")))
+    outcome = _run(settings, folder, lambda *_: None)
+    done.write_text(json.dumps(asdict(outcome), indent=1), encoding="utf-8")
+    return outcome
+
+
+def disturbed(settings: SoakSettings, folder: Path, reference: Path) -> Outcome:
+    """Run the same jobs with faults, and compare."""
+    outcome = _run(settings, folder, partial(_disturb, settings))
+    for job in range(settings.jobs):
+        found = differences(reference / "files" / _name(job), folder / "files" / _name(job))
+        outcome.wrong += [f"{_name(job)}: {difference}" for difference in found]
+    return outcome
+
+
+Disturb = Callable[[Faults, Outcome, threading.Event], None]
+
+
+def _run(settings: SoakSettings, folder: Path, disturb: Disturb) -> Outcome:
+    shutil.rmtree(folder, ignore_errors=True)
+    (folder / "files").mkdir(parents=True)
+    outcome, over = Outcome(), threading.Event()
+    with _servers(folder) as (redis, postgres):
+        fleet = Fleet(folder / "data", settings.environment(redis, postgres), settings.workers)
+        fleet.start()
+        faults = Faults(fleet, redis, postgres, settings.lease_s, random.Random(settings.seed))
+        began = time.monotonic()
+        breaker = threading.Thread(target=disturb, args=(faults, outcome, over))
+        breaker.start()
+        try:
+            with ThreadPoolExecutor(settings.jobs) as clients:
+                jobs = [clients.submit(_job, settings, fleet.url, folder, job, over) for job in range(settings.jobs)]
+                results = [job.result() for job in jobs]
+        finally:
+            over.set()
+            breaker.join()
+        outcome.seconds = round(time.monotonic() - began, 1)
+        for job, (state, wrong) in enumerate(results):
+            outcome.states[_name(job)] = state
+            outcome.wrong += wrong
+        _audit(outcome, postgres, fleet)
+    return outcome
+
+
+@contextmanager
+def _servers(folder: Path) -> Iterator[tuple[RedisServer, PostgresServer]]:
+    redis, postgres = RedisServer(), PostgresServer(folder / "postgres")
+    redis.start()
+    try:
+        postgres.start()
+        yield redis, postgres
+    finally:
+        redis.kill()
+        postgres.kill()
+
+
+def _disturb(settings: SoakSettings, faults: Faults, outcome: Outcome, over: threading.Event) -> None:
+    duplicates = Duplicates(faults.redis.url)
+    duplicates.start()
+    while len(faults.done) < settings.faults and not over.wait(faults.rng.uniform(0.5, 1.5) * settings.pause_s):
+        faults.any()
+    duplicates.stop()
+    outcome.faults, outcome.duplicates = faults.done, duplicates.sent
+
+
+def _job(settings: SoakSettings, url: str, folder: Path, job: int, over: threading.Event) -> tuple[str, list[str]]:
+    """Submit, wait, download; the clients come one after the other, so uploads and downloads go on all the time."""
+    over.wait(job * settings.pause_s / 4)
+    client = SoakClient(url)
+    inspection_id = client.submit(_name(job), settings.video, settings.annotations, settings.parameters(job))
+    found = client.wait(inspection_id, settings.job_s)
+    wrong = [
+        f"{_name(job)}: {path} was damaged on its way"
+        for path in client.download(inspection_id, folder / "files" / _name(job))
+    ]
+    if found["state"] != "succeeded":
+        wrong.append(f"{_name(job)}: {found['state']} {found['error']}")
+    return str(found["state"]), wrong
+
+
+def _audit(outcome: Outcome, postgres: PostgresServer, fleet: Fleet) -> None:
+    database = Database(postgres.url)
+    outcome.attempts = audit.attempts(database)
+    outcome.wrong += [f"{task}: not exactly one accepted attempt" for task in audit.wrong_attempts(database)]
+    outcome.wrong += [f"{path}: belongs to nothing" for path in audit.orphans(database, fleet.folder)]
+    outcome.wrong += [f"{process}: did not end" for process in fleet.stop()]
+    database.close()
+
+
+def _name(job: int) -> str:
+    return f"job-{job:02d}"

@@ -1,0 +1,162 @@
+"""`bladeatlas serve`: the API, and the runners beside it when no broker is configured."""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import ipaddress
+import signal
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from functools import partial
+
+import uvicorn
+from fastapi import FastAPI
+from sqlalchemy import func, select
+
+from api.app import create_app
+from core.errors import BadInput, BladeAtlasError
+from store import json_log
+from store.db import Database
+from store.graph import Graph, load_graph
+from store.models import ApiKey
+from store.opening import open_artifacts, open_database
+from store.plan import Plan
+from store.retention import Retention
+from store.settings import DeploymentSettings
+from worker.cleaner import UploadCleaner
+from worker.periodic import Periodic
+from worker.polling import PollingRunners
+from worker.queue import TaskQueue
+from worker.service import WorkerService
+
+_log = json_log.logger("bladeatlas.server")
+_DRAIN_S = 5
+"""How long requests may go on after the server was told to stop."""
+
+
+def command(parsed: argparse.Namespace) -> int:
+    """Serve until SIGTERM or SIGINT; returns the exit code."""
+    if parsed.workers is not None and parsed.workers < 1:
+        raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
+    settings = DeploymentSettings()
+    json_log.configure()
+    with _alone(settings) as identity:
+        database = open_database(settings)
+        try:
+            _refuse_strangers(database, parsed.host)
+            graph = load_graph(settings.graph)
+            with ExitStack() as running:
+                wake = _background(running, settings, database, graph, identity, parsed.workers)
+                _listen(_application(settings, database, graph, wake), parsed.host, parsed.port)
+        finally:
+            database.close()
+    return 0
+
+
+def _application(
+    settings: DeploymentSettings, database: Database, graph: Graph, wake: Callable[[str], None]
+) -> FastAPI:
+    """The API over these services; `wake` is called with an inspection's id after its commit."""
+    return create_app()
+
+
+@contextmanager
+def _alone(settings: DeploymentSettings) -> Iterator[str]:
+    """The server's name, the same after every restart; no two servers share a data folder.
+
+    Raises:
+        BadInput: another server uses the folder, or it cannot be written.
+    """
+    folder = settings.data_dir.absolute()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        stream = (folder / "server.lock").open("a+")
+    except OSError as error:
+        raise BadInput(f"the data folder '{folder}' cannot be written: {error.strerror}", where="data_dir") from None
+    with stream:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise BadInput(f"another server uses '{folder}'", code="folder_in_use", where="data_dir") from None
+        stream.seek(0)
+        name = stream.read().strip()
+        if not name:
+            name = f"serve-{uuid.uuid4().hex[:12]}"
+            stream.write(name)
+            stream.flush()
+        yield name
+
+
+def _refuse_strangers(database: Database, host: str) -> None:
+    """Without keys anybody may do anything, so only this machine may call.
+
+    Raises:
+        BadInput: `host` is not loopback and there is no key.
+    """
+    with database.read() as session:
+        keys = session.scalar(select(func.count()).select_from(ApiKey).where(ApiKey.revoked_at.is_(None)))
+    if not keys and not _is_loopback(host):
+        message = f"there is no API key, so the server binds only to this machine, not to '{host}'"
+        raise BadInput(message, code="no_keys", where="--host")
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _background(
+    running: ExitStack,
+    settings: DeploymentSettings,
+    database: Database,
+    graph: Graph,
+    identity: str,
+    workers: int | None,
+) -> Callable[[str], None]:
+    """Start what runs beside the API; returns what to call when an inspection has work."""
+    uploads = UploadCleaner(Retention(database), settings.folder("uploads"), settings.stale_s)
+    chore = Periodic("uploads", uploads.round, settings.sweep_s)
+    _run(running, chore)
+    if settings.broker_url:
+        queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
+        plan = Plan(database, graph, settings.lease_s, settings.max_attempts)
+        sender = Periodic("queue", partial(queue.top_up, plan), settings.sweep_s)
+        _run(running, sender)
+        return lambda _inspection_id: sender.nudge()
+    service = WorkerService(settings, database, open_artifacts(settings), graph, identity)
+    # The lock on the folder says that the process which held these is gone.
+    freed = service.plan.take_over_all(f"{identity}/")
+    service.publishing.take_over(identity)
+    service.results.sweep(service.plan.leased)
+    _log.info("runners_ready", owner=identity, leases_taken_over=freed)
+    runners = PollingRunners(service, workers or settings.worker_count())
+    _run(running, service)
+    _run(running, runners)
+    return lambda _inspection_id: runners.wake()
+
+
+def _run(running: ExitStack, part: Periodic | WorkerService | PollingRunners) -> None:
+    part.start()
+    running.callback(part.stop)
+
+
+def _listen(application: FastAPI, host: str, port: int) -> None:
+    config = uvicorn.Config(
+        application,
+        host=host,
+        port=port,
+        log_config=None,
+        access_log=False,
+        timeout_graceful_shutdown=_DRAIN_S,
+    )
+    server = uvicorn.Server(config)
+    # uvicorn raises the signal once more at its end: by then it has done its work, and runners are still to be stopped.
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: None)
+    server.run()
+    if not server.started:
+        raise BladeAtlasError("the server could not start; the lines above say why", where="serve")

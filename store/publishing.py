@@ -1,0 +1,144 @@
+"""Who publishes an inspection, and the one transaction that makes its files and rows the ones that are shown.
+
+A plan that is over is published once per attempt. Whoever does it holds a lease with a fence, as on a task;
+files go into the store first, under the attempt's own folder, and count from the commit on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import ColumnElement, delete, or_, select, update
+from sqlalchemy.orm import Session
+
+from store.artifacts import Stored
+from store.db import Database
+from store.leasing import changed, lock_inspection
+from store.media import media_type
+from store.models import ACTIVE_INSPECTION, Artifact, Inspection
+from store.rows import replace_rows
+
+
+def artifact_prefix(inspection_id: str, attempt: int) -> str:
+    """Folder of the store with what an attempt published."""
+    return f"inspections/{inspection_id}/{attempt}"
+
+
+@dataclass(frozen=True)
+class Ticket:
+    """The right to publish one attempt of an inspection."""
+
+    inspection_id: str
+    attempt: int
+    fence: int
+
+    @property
+    def prefix(self) -> str:
+        """Where its files go."""
+        return artifact_prefix(self.inspection_id, self.attempt)
+
+
+@dataclass(frozen=True)
+class Publishing:
+    """Leases on publishing in one database."""
+
+    db: Database
+    lease_s: float = 30.0
+    retention_days: float = 30.0
+
+    def take(self, owner: str) -> Ticket | None:
+        """The inspection that has waited longest to be published; None when there is none."""
+        with self.db.read() as session:
+            query = select(Inspection.id).where(*_due(self.db.now(session)))
+            ids = session.scalars(query.order_by(Inspection.ended_at, Inspection.id)).all()
+        taken = (self._take(inspection_id, owner) for inspection_id in ids)
+        return next((ticket for ticket in taken if ticket is not None), None)
+
+    def _take(self, inspection_id: str, owner: str) -> Ticket | None:
+        with self.db.write() as session:
+            inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
+            values = {
+                "publisher": owner,
+                "publish_fence": Inspection.publish_fence + 1,
+                "publish_expires_at": now + timedelta(seconds=self.lease_s),
+            }
+            where = (Inspection.id == inspection_id, *_due(now))
+            if not changed(session, update(Inspection).where(*where).values(values)):
+                return None
+            session.refresh(inspection)
+            return Ticket(inspection_id, inspection.attempt, inspection.publish_fence)
+
+    def renew(self, ticket: Ticket) -> bool:
+        """Keep the lease; False when somebody else has it or there is nothing to publish any more."""
+        with self.db.write() as session:
+            until = self.db.now(session) + timedelta(seconds=self.lease_s)
+            return changed(session, update(Inspection).where(*_held(ticket)).values(publish_expires_at=until))
+
+    def take_over(self, owner: str) -> None:
+        """Free the leases of an owner that is known to be gone."""
+        with self.db.write() as session:
+            changed(session, update(Inspection).where(Inspection.publisher == owner).values(publish_expires_at=None))
+
+    def finish(self, ticket: Ticket, files: Sequence[Stored], rows: Mapping[str, Any]) -> bool:
+        """Show what was published: artifacts, the report's rows, and that the inspection is over.
+
+        Args:
+            files: by path of the contract.
+            rows: see `store.rows.replace_rows`.
+
+        Returns:
+            False when the lease was lost; nothing has changed then.
+        """
+        with self.db.write() as session:
+            inspection, now = lock_inspection(session, ticket.inspection_id), self.db.now(session)
+            values = {
+                "published": ticket.attempt,
+                "publisher": None,
+                "publish_expires_at": None,
+                "expires_at": now + timedelta(days=self.retention_days) if self.retention_days else None,
+                "updated_at": now,
+            }
+            if not changed(session, update(Inspection).where(*_held(ticket)).values(values)):
+                return False
+            _replace_artifacts(session, ticket, files, now)
+            replace_rows(session, inspection.id, rows)
+            return True
+
+
+def _due(now: datetime) -> tuple[ColumnElement[bool], ...]:
+    return (
+        Inspection.state.not_in(ACTIVE_INSPECTION),
+        Inspection.published < Inspection.attempt,
+        Inspection.deleted_at.is_(None),
+        or_(Inspection.publish_expires_at.is_(None), Inspection.publish_expires_at < now),
+    )
+
+
+def _held(ticket: Ticket) -> tuple[ColumnElement[bool], ...]:
+    return (
+        Inspection.id == ticket.inspection_id,
+        Inspection.publish_fence == ticket.fence,
+        Inspection.attempt == ticket.attempt,
+        Inspection.published < ticket.attempt,
+        Inspection.state.not_in(ACTIVE_INSPECTION),
+        Inspection.deleted_at.is_(None),
+    )
+
+
+def _replace_artifacts(session: Session, ticket: Ticket, files: Sequence[Stored], now: datetime) -> None:
+    session.execute(delete(Artifact).where(Artifact.inspection_id == ticket.inspection_id))
+    session.add_all(
+        Artifact(
+            inspection_id=ticket.inspection_id,
+            path=file.path,
+            key=f"{ticket.prefix}/{file.path}",
+            size=file.size,
+            sha256=file.sha256,
+            media_type=media_type(file.path),
+            created_at=now,
+        )
+        for file in files
+    )

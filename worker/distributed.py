@@ -1,0 +1,89 @@
+"""A worker of a distributed system: fed by the broker, or asking the database when there is none."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Sequence
+from functools import partial
+
+from store.db import Database
+from store.graph import load_graph
+from store.json_log import logger
+from store.opening import open_artifacts
+from store.settings import DeploymentSettings
+from worker.keeper import LeaseKeeper
+from worker.patience import patiently
+from worker.periodic import Periodic
+from worker.polling import PollingRunners
+from worker.queue import TaskQueue
+from worker.service import WorkerService, unique_name
+
+_log = logger("bladeatlas.worker")
+
+
+def run_worker(settings: DeploymentSettings, database: Database, queues: Sequence[str], workers: int) -> int:
+    """Run tasks until SIGTERM or SIGINT; returns the exit code.
+
+    Args:
+        queues: of ``cpu`` and ``gpu``.
+        workers: tasks side by side.
+    """
+    service = WorkerService(
+        settings, database, open_artifacts(settings), load_graph(settings.graph), unique_name(), tuple(queues)
+    )
+    _log.info(
+        "worker_started", name=service.name, queues=list(queues), workers=workers, broker=bool(settings.broker_url)
+    )
+    run = _fed_by_broker if settings.broker_url else _asking
+    code = run(service, workers)
+    _log.info("worker_stopped", name=service.name)
+    return code
+
+
+def _asking(service: WorkerService, workers: int) -> int:
+    stopped = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stopped.set())
+    runners = PollingRunners(service, workers)
+    service.start()
+    runners.start()
+    stopped.wait()
+    runners.stop()
+    service.stop()
+    return 0
+
+
+def _fed_by_broker(service: WorkerService, workers: int) -> int:
+    settings, plan = service.settings, service.plan
+    queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
+    sender = Periodic("queue", partial(queue.top_up, plan), settings.sweep_s)
+    service.on_end = sender.nudge
+    runner = service.runner()
+    keeper = LeaseKeeper(runner, settings.heartbeat_s)
+
+    def run(name: str) -> None:
+        lease = patiently(plan.db, lambda: plan.lease(service.name, queues=(name,)), runner.interrupted)
+        if lease is not None:
+            runner.run(lease)
+
+    def keep() -> None:
+        try:
+            keeper.run()
+        except Exception:  # noqa: BLE001 - the border of a thread: logged, and what follows is said below
+            # Without heartbeats every lease is lost: better no worker than one that works for nothing.
+            _log.exception("heartbeat_failed")
+            runner.interrupted.set()
+            signal.raise_signal(signal.SIGTERM)
+
+    thread = threading.Thread(target=keep, name="heartbeat", daemon=True)
+    for part in (thread, service, sender):
+        part.start()
+    try:
+        return queue.work(run, service.name, service.queues, workers, runner.interrupted.set)
+    finally:
+        sender.nudge()
+        sender.stop()
+        keeper.stopped.set()
+        thread.join()
+        service.stop()

@@ -89,7 +89,7 @@ class TaskRunner:
         try:
             ended = self._in_child(held, temporary)
             if ended.stopped:
-                return self._release(held, ended.stopped), None
+                return self._release(held.lease), None
             if ended.error is not None:
                 outcome = self._fail(lease, ended.error, ended.seconds, ended.peak_rss_bytes)
                 return outcome, ended.error
@@ -151,10 +151,9 @@ class TaskRunner:
             lambda: self.plan.fail(lease, record, retry=error.retryable, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
         )
 
-    def _release(self, held: Held, why: StopReason) -> str:
-        if why == "lost":
-            return "refused"
-        return "released" if self._patiently(lambda: self.plan.release(held.lease)) else "refused"
+    def _release(self, lease: Lease) -> str:
+        # A lost lease is given back as well: the plan refuses it, and the attempt says so.
+        return "released" if self._patiently(lambda: self.plan.release(lease)) else "refused"
 
     def _patiently(self, call: Callable[[], T]) -> T:
         return patiently(self.plan.db, call, self.interrupted)

@@ -1,4 +1,4 @@
-"""Initial pairs of a window, ranked from the verified graph instead of searched by trial (ENGINES section 3)."""
+"""Initial pairs of a window, ranked from the verified graph instead of searched by trial."""
 
 from __future__ import annotations
 

@@ -16,6 +16,7 @@ from fastapi import FastAPI
 from sqlalchemy import func, select
 
 from api.app import create_app
+from api.services import make_services
 from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.db import Database
@@ -59,7 +60,7 @@ def _application(
     settings: DeploymentSettings, database: Database, graph: Graph, wake: Callable[[str], None]
 ) -> FastAPI:
     """The API over these services; `wake` is called with an inspection's id after its commit."""
-    return create_app()
+    return create_app(make_services(settings, database, open_artifacts(settings), wake=wake, graph=graph))
 
 
 @contextmanager

@@ -25,6 +25,7 @@ FLAG_CODES: Mapping[str, str] = {
     "bent_model": "the model's rotations disagree with those measured between pairs of images",
     "few_points": "the model has few 3D points per registered image",
     "coverage_low": "few of the frames are registered in the model",
+    "focal_uncertain": "few of the starts tried for the lens end at the focal length that was chosen",
     "focal_implausible": "the focal length found gives a field of view that no borescope has",
     "distortion_implausible": "the lens distortion found folds the image: radius does not grow with angle",
     "high_reprojection_error": "the model fits its keypoints badly",

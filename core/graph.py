@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from core.settings import Settings
 from core.stage import Facts
+from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
 
 
@@ -30,9 +31,11 @@ class StageSpec:
     """Many tasks of this stage run side by side, so each uses one thread."""
     queue: Literal["cpu", "gpu"] = "cpu"
     weight: float = 1.0
-    """Rough share of the run's time, for progress before anything is learnt."""
+    """Rough share of the run's time, for progress before anything is learnt: 10 s of two cores each."""
     reads_video: bool = False
     reads_annotations: bool = False
+    weights: tuple[str, ...] = ()
+    """Files of learnt weights that the stage uses; their hashes enter its fingerprint."""
 
 
 def _spec(name: str, *settings: str, version: int = 1, **more: Any) -> StageSpec:
@@ -44,30 +47,41 @@ _FOCAL_MAPPER = tuple(
     for name in ("min_model_size", "init_min_num_inliers", "abs_pose_min_num_inliers", "abs_pose_min_inlier_ratio")
 )
 
+_MATCHES = ("matching", "verification", "features.method", "seed")
+
 STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
-        _spec("probe", "input", reads_video=True, weight=1),
-        _spec("annotations", reads_annotations=True, weight=0.2),
-        _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=1),
-        _spec("features", "features", fan_out=True, weight=20),
-        _spec("focal", "camera", "matching.ratio", "verification", *_FOCAL_MAPPER, "seed", fan_out=True, weight=6),
+        _spec("probe", "input", reads_video=True, weight=0.2),
+        _spec("annotations", reads_annotations=True, weight=0.1),
+        _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=0.3),
+        _spec("features", "features", fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
+        _spec("focal", "camera", "matching.ratio", "verification", *_FOCAL_MAPPER, "seed", fan_out=True, weight=7),
         _spec("camera", "camera", weight=0.1),
-        _spec("matches", "matching", "verification", "features.method", "seed", fan_out=True, weight=12),
-        _spec("graph", weight=1),
-        _spec("coarse", "mapper", "seed", fan_out=True, weight=20),
+        _spec(
+            "matches",
+            "matching",
+            "verification",
+            "features.method",
+            "seed",
+            fan_out=True,
+            weight=45,
+            weights=(LIGHTGLUE_WEIGHTS,),
+        ),
+        _spec("graph", weight=0.3),
+        _spec("coarse", "mapper", "seed", fan_out=True, weight=25),
         _spec("reduce_coarse", weight=0.1),
-        _spec("refine", "mapper", "seed", fan_out=True, weight=15),
+        _spec("refine", "mapper", "seed", fan_out=True, weight=21),
         _spec("reduce_refine", weight=0.1),
-        _spec("confirm", "mapper", "model.confirm", "seed", weight=8),
-        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", weight=8),
+        _spec("confirm", "mapper", "model.confirm", "seed", weight=6),
+        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", weight=16),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
-        _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=12),
-        _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=5),
-        _spec("fuse", "fusion", "dense", weight=2),
-        _spec("mesh", "mesh", weight=3),
-        _spec("map_defects", "mapping", weight=1),
-        _spec("timeline", "timeline", weight=0.2),
+        _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=24),
+        _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=21),
+        _spec("fuse", "fusion", "dense", weight=3),
+        _spec("mesh", "mesh", weight=2),
+        _spec("map_defects", "mapping", weight=0.4),
+        _spec("timeline", "timeline", weight=0.3),
         _spec("gallery", "gallery", reads_video=True, weight=1),
     )
 }

@@ -38,7 +38,7 @@ class Crop:
 
 
 def crop_of(roi: RoiSettings, width: int, height: int) -> Crop:
-    """Crop of a width x height frame (px): shares times size, truncated (METHOD.md stage 1).
+    """Crop of a width x height frame (px): shares times size, truncated (as in the thesis).
 
     960x720 with (0.04, 0.11, 0.86, 0.84) gives x 38:825, y 79:604 = 787x525.
 

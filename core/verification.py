@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from core.settings.groups import VerificationSettings
 
-UNDEFINED, DEGENERATE, CALIBRATED = 0, 1, 2
-"""COLMAP's configurations of a pair that are named in this code; 4 planar, 5 panoramic, 7 watermark."""
+UNDEFINED, DEGENERATE, CALIBRATED, PLANAR = 0, 1, 2, 4
+"""COLMAP's configurations of a pair that are named in this code; 5 panoramic, 7 watermark."""
 
 _MIN_TRIALS = 30
 """Of the RANSAC. COLMAP's 100 find the same inliers on real pairs at twice the cost."""

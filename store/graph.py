@@ -11,6 +11,7 @@ from core.fingerprint import task_fingerprint
 from core.graph import STAGES, StageSpec, TaskSpec, expand, stage_settings
 from core.settings import Settings
 from core.stage import Facts
+from core.weight_files import weights_digest
 
 NO_RESULT = "none"
 """Stands in a fingerprint for a dependency without a result."""
@@ -40,6 +41,7 @@ class Graph:
             inputs["input:video"] = video_sha256
         if spec.reads_annotations:
             inputs["input:annotations"] = annotations_sha256 or NO_RESULT
+        inputs.update({f"weights:{name}": weights_digest(name) for name in spec.weights})
         chosen = stage_settings(settings, spec)
         return task_fingerprint(task.stage, spec.version, chosen, dict(task.args), inputs)
 

@@ -21,6 +21,7 @@ import pytest
 
 from bench.accuracy.score import score_result
 from core.surface.ply import read_mesh
+from tests.core.making_videos import make_still_video
 from tests.signals import heed_interrupts
 
 pytestmark = pytest.mark.sample
@@ -263,6 +264,25 @@ def test_another_input_is_refused(finished: tuple[Path, Ended]) -> None:
     assert "another input" in ended.errors
     assert ended.errors.count("\n") == 1
     assert fingerprint(finished[0]) == before
+
+
+def test_a_static_camera_ends_without_reconstruction(tmp_path: Path) -> None:
+    """An outcome, not bad input: exit 3, the flag that says why, and a row for every detection."""
+    video = make_still_video(tmp_path / "still.mp4", VIDEO, 24)
+    detection = {"detections": [{"label": "nick", "score": 0.9, "bbox": [0.4, 0.4, 0.5, 0.5]}]}
+    annotations = tmp_path / "still.json"
+    annotations.write_text(json.dumps({"0.5": detection, "1.0": detection}))
+    out = tmp_path / "out"
+    ended = run(out, video=video, annotations=annotations)
+    assert ended.code == 3
+    summary, quality = read(out / "summary.json"), read(out / "quality.json")
+    assert (summary["state"], summary["reason"]) == ("failed", "no_reconstruction")
+    assert quality["verdict"] == "refused"
+    assert "no_parallax" in {flag["code"] for flag in quality["flags"]}
+    detections = rows(out / "mapping" / "detections.csv")
+    assert [row["outcome"] for row in detections] == ["unplaced", "unplaced"]
+    assert not (out / "mapping" / "mesh_defects.ply").exists()
+    assert ended.errors.count("\n") == 1
 
 
 def lines_until(process: subprocess.Popen[str], **wanted: str) -> Iterator[dict[str, Any]]:

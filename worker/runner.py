@@ -105,7 +105,7 @@ class TaskRunner:
         try:
             ended = self._in_child(held, temporary)
             if ended.stopped:
-                return self._release(held, ended.stopped), None
+                return self._release(held.lease), None
             if ended.error is not None:
                 outcome = self._fail(lease, ended.error, ended.seconds, ended.peak_rss_bytes)
                 return outcome, ended.error
@@ -168,12 +168,11 @@ class TaskRunner:
             return self._fail(held.lease, error, 0.0, 0)
         # Nobody's fault but the store's, and what was computed is kept here: again when it answers.
         self.interrupted.wait(_STORE_PAUSE_S)
-        return self._release(held, "interrupted")
+        return self._release(held.lease)
 
-    def _release(self, held: Held, why: StopReason) -> str:
-        if why == "lost":
-            return "refused"
-        return "released" if self._patiently(lambda: self.plan.release(held.lease)) else "refused"
+    def _release(self, lease: Lease) -> str:
+        # A lost lease is given back as well: the plan refuses it, and the attempt says so.
+        return "released" if self._patiently(lambda: self.plan.release(lease)) else "refused"
 
     def _patiently(self, call: Callable[[], T]) -> T:
         return patiently(self.plan.db, call, self.interrupted)

@@ -12,7 +12,8 @@ from bench.speed.finished import FinishedRun
 from bench.speed.timing import Row, Table, interleaved
 from core.features.disk import Disk
 from core.features.extract import read_image
-from core.features.weights import DISK_WEIGHTS, load_weights
+from core.features.weights import load_weights
+from core.weight_files import DISK_WEIGHTS
 
 COUNT = 5000
 

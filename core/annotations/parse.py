@@ -1,4 +1,4 @@
-"""From JSON values to typed annotations (form: METHOD.md, Inputs)."""
+"""From JSON values to typed annotations (form: docs/method.md)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.annotations.model import Annotations, Box, Detection, Entry, Mask, Pol
 from core.annotations.read import read_json
 
 MIN_MASK_IOU = 0.5
-"""A mask with the same label and at least this overlap of boxes belongs to a detection (METHOD.md)."""
+"""A mask with the same label and at least this overlap of boxes belongs to a detection."""
 
 
 def load_annotations(path: Path | None) -> Annotations:

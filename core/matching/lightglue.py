@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from core.errors import StageFailed
 from core.features.io import FrameFeatures
-from core.features.weights import LIGHTGLUE_WEIGHTS, load_weights
+from core.features.weights import load_weights
 from core.matching.mutual_nearest import Matches, unit_descriptors
+from core.weight_files import LIGHTGLUE_WEIGHTS
 
 _ATTENTION = re.compile(r"^(self|cross)_attn\.(\d+)\.")
 

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 THESIS = "thesis"
-"""Source mark: the value of the MSc thesis (METHOD values, chapter 3)."""
+"""Source mark: the value of the MSc thesis (chapter 3)."""
 
 
 class Group(BaseModel):

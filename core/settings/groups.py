@@ -28,7 +28,7 @@ class FrameSettings(Group):
         600, "sampled and annotated frames of the search together, at most", unit="frames", source="time budget", ge=2
     )
     time_rule: Literal["pts", "average_rate"] = option(
-        "pts", "frame of a clip time: nearest presentation time, or time x average rate", source="METHOD; exact times"
+        "pts", "frame of a clip time: nearest presentation time, or time x average rate", source="exact times"
     )
     jpeg_quality: int = option(95, "quality of the exported frames", unit="%", source="OpenCV default", ge=50, le=100)
 
@@ -49,18 +49,22 @@ class CameraSettings(Group):
         None, "horizontal field of view of the source frame, when known", unit="deg", source="user", gt=5, lt=220
     )
     focal: Literal["estimate", "colmap"] = option(
-        "estimate", "without a field of view: estimate it, or start at COLMAP's 1.2 x longer side", source="METHOD"
+        "estimate",
+        "without a field of view: estimate it, or start at COLMAP's 1.2 x longer side",
+        source="method",
     )
     fov_starts_deg: tuple[float, ...] = option(
         (40.0, 55.0, 70.0, 85.0, 100.0, 120.0),
         "horizontal fields of view tried by the estimate",
         unit="deg",
-        source="METHOD: 40-120 degrees",
+        source="borescopes: 40-120 degrees",
     )
     focal_span: int = option(30, "frames in each span the estimate maps", unit="frames", source="measured", ge=8)
     focal_spans: int = option(2, "spans the estimate maps for every start", source="measured", ge=1, le=8)
     principal_point: Literal["source", "crop"] = option(
-        "source", "principal point: source frame's centre minus crop offset, or the crop's centre", source="METHOD"
+        "source",
+        "principal point: source frame's centre minus crop offset, or the crop's centre",
+        source="method",
     )
 
 
@@ -83,7 +87,9 @@ class MatchSettings(Group):
     """Pairs and how they are matched."""
 
     method: Literal["mutual_nearest", "lightglue", "auto"] = option(
-        "auto", "mutual nearest neighbours, LightGlue, or LightGlue only where verification is weak", source="METHOD"
+        "auto",
+        "mutual nearest neighbours, LightGlue, or LightGlue only where verification is weak",
+        source="method",
     )
     window: int = option(
         5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1
@@ -128,10 +134,14 @@ class WindowSettings(Group):
     refine_step: int = option(10, "step of refined windows", unit="frames", source="thesis", ge=1)
     refine_min: int = option(60, "shorter refined windows are dropped", unit="frames", source="thesis", ge=3)
     start: Literal["scratch", "warm"] = option(
-        "warm", "cases start from scratch, or from the model of a case named by the plan", source="ENGINES 3"
+        "warm", "cases start from scratch, or from the model of a case named by the plan", source="decision 6"
     )
     anchor_step: int = option(
-        60, "warm: windows that start at multiples of this map from scratch", unit="frames", source="ENGINES 3", ge=1
+        60,
+        "warm: windows that start at multiples of this map from scratch",
+        unit="frames",
+        source="decision 6",
+        ge=1,
     )
 
 
@@ -143,10 +153,10 @@ class MapperSettings(Group):
     abs_pose_min_num_inliers: int = option(20, "inliers to register an image", source="thesis", ge=6)
     abs_pose_min_inlier_ratio: float = option(0.10, "inlier share to register an image", source="thesis", ge=0, le=1)
     initial_pair: Literal["graph", "colmap"] = option(
-        "graph", "initial pair from the verified graph, or COLMAP's own search", source="ENGINES 3"
+        "graph", "initial pair from the verified graph, or COLMAP's own search", source="decision 6"
     )
     bundle_adjustment: Literal["tuned", "colmap"] = option(
-        "tuned", "bundle adjustment during the window search", source="ENGINES 3"
+        "tuned", "bundle adjustment during the window search", source="decision 6"
     )
     refine_distortion: bool = option(
         False, "free the distortion while a model grows; the last adjustment frees it in any case", source="measured"
@@ -160,10 +170,10 @@ class ModelSettings(Group):
     """From the winning case to the final model."""
 
     confirm: bool = option(
-        True, "map the winner again from scratch with COLMAP's bundle adjustment", source="ENGINES 3"
+        True, "map the winner again from scratch with COLMAP's bundle adjustment", source="decision 6"
     )
-    register_rest: bool = option(True, "go on mapping over all remaining frames", source="METHOD")
-    final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="ENGINES 7")
+    register_rest: bool = option(True, "go on mapping over all remaining frames", source="method")
+    final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="measured")
     loss_scale_px: float = option(
         0.0,
         "last adjustment: residuals above this count less (Cauchy); 0 counts squares",
@@ -172,7 +182,7 @@ class ModelSettings(Group):
         ge=0,
     )
     refine_principal_point: Literal["auto", "never"] = option(
-        "auto", "free the principal point in the last adjustment when it is well determined", source="ENGINES 7"
+        "auto", "free the principal point in the last adjustment when it is well determined", source="measured"
     )
 
 
@@ -180,19 +190,19 @@ class DenseSettings(Group):
     """Depth maps."""
 
     method: Literal["auto", "cpu", "cuda"] = option(
-        "auto", "own PatchMatch on the CPU, COLMAP's on CUDA, or CUDA where pycolmap has it", source="METHOD"
+        "auto", "own PatchMatch on the CPU, COLMAP's on CUDA, or CUDA where pycolmap has it", source="method"
     )
     views: int = option(60, "depth maps, spread over the model; 0 = every registered image", source="time budget", ge=0)
-    sources: int = option(5, "source images per depth map", source="METHOD: 4-6; thesis 20", ge=1, le=50)
+    sources: int = option(5, "source images per depth map", source="measured: 4-6; thesis 20", ge=1, le=50)
     max_image_size_px: int = option(2000, "longer side of undistorted images", unit="px", source="thesis", ge=64)
     scale: float = option(1.0, "further scale of undistorted images", source="draft uses 0.5", gt=0, le=1)
     max_stretch: float = option(
         2.0, "radial stretch of the lens's border by undistortion, at most (2 = 45 degrees)", source="measured", gt=1
     )
-    levels: int = option(3, "image scales, coarse to fine", source="ENGINES 4", ge=1, le=5)
+    levels: int = option(3, "image scales, coarse to fine", source="decision 7", ge=1, le=5)
     iterations: int = option(2, "red-black sweeps per scale", source="measured: more find false minima", ge=1, le=10)
-    best_views: int = option(2, "cost is the mean over this many best source views", source="ENGINES 4", ge=1, le=10)
-    geometric_passes: int = option(1, "passes with geometric consistency", source="ENGINES 4", ge=0, le=3)
+    best_views: int = option(2, "cost is the mean over this many best source views", source="decision 7", ge=1, le=10)
+    geometric_passes: int = option(1, "passes with geometric consistency", source="decision 7", ge=0, le=3)
     min_ncc: float = option(0.3, "estimates correlating less are dropped", source="measured", ge=-1, le=1)
     min_triangulation_deg: float = option(
         3.0, "estimates seen under a smaller angle are dropped", unit="deg", source="COLMAP", ge=0
@@ -203,22 +213,28 @@ class DenseSettings(Group):
 class FusionSettings(Group):
     """Fusion of depth maps into one point cloud (COLMAP)."""
 
-    min_num_pixels: int = option(3, "pixels per fused point, at least", source="ENGINES 4; COLMAP 5", ge=1)
+    min_num_pixels: int = option(
+        2, "pixels per fused point, at least", source="each is confirmed by two views already; COLMAP 5", ge=1
+    )
     max_reproj_error_px: float = option(2.0, "reprojection error of fused pixels", unit="px", source="COLMAP", gt=0)
     max_depth_error: float = option(0.01, "relative depth difference of fused pixels", source="COLMAP", gt=0)
     max_normal_error_deg: float = option(
-        10.0, "angle between normals of fused pixels", unit="deg", source="COLMAP", gt=0
+        40.0,
+        "angle between normals of fused pixels",
+        unit="deg",
+        source="measured; COLMAP 10",
+        gt=0,
     )
 
 
 class MeshSettings(Group):
     """Surface from the cloud (COLMAP's Poisson)."""
 
-    poisson_depth: int = option(10, "octree depth", source="METRICS; COLMAP 13", ge=4, le=14)
-    poisson_trim: float = option(6.0, "Poisson's own trimming, in octree depth", source="METRICS; COLMAP 10", ge=0)
+    poisson_depth: int = option(10, "octree depth", source="metrics; COLMAP 13", ge=4, le=14)
+    poisson_trim: float = option(6.0, "Poisson's own trimming, in octree depth", source="metrics; COLMAP 10", ge=0)
     keep_unsupported: bool = option(False, "map on the full Poisson surface", source="thesis: on")
     support_spacings: float = option(
-        7.5, "farther from the cloud than this many median point spacings is not supported", source="METRICS", gt=0
+        5.0, "farther from the cloud than this many median point spacings is not supported", source="measured", gt=0
     )
     keep_largest_component: bool = option(False, "keep only the largest connected part", source="thesis: off")
 
@@ -228,10 +244,10 @@ class MappingSettings(Group):
 
     method: Literal["thesis"] = option("thesis", "rule that places a detection", source="thesis")
     box_frame: Literal["source", "crop"] = option(
-        "source", "frame in which boxes are normalised (crop repeats the thesis's reading)", source="METHOD"
+        "source", "frame in which boxes are normalised (crop repeats the thesis's reading)", source="method"
     )
     time_rule: Literal["pts", "average_rate"] = option(
-        "pts", "time of a frame: presentation time, or index / average rate", source="METHOD"
+        "pts", "time of a frame: presentation time, or index / average rate", source="method"
     )
     time_tolerance_s: float = option(
         0.4, "nearest registered image in time, nearer than", unit="s", source="thesis", gt=0

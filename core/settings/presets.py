@@ -67,6 +67,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "dense.views": 0,
         "dense.sources": 20,
         "fusion.min_num_pixels": 5,
+        "fusion.max_normal_error_deg": 10.0,
         "mesh.poisson_depth": 13,
         "mesh.poisson_trim": 10.0,
         "mesh.keep_unsupported": True,

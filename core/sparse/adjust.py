@@ -8,6 +8,7 @@ residuals count less (Cauchy's loss: mismatches of up to 4 px pass the filters),
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -42,6 +43,9 @@ MIN_SHIFT_SIGMAS = 3.0
 MAX_SHIFT_SHARE = 0.1
 """A principal point farther from its start than this share of the longer image side is not believed."""
 MIN_IMAGES = 10
+TRIAL_POINTS = 400
+"""Points per image of the trial with a free principal point. All of them need gigabytes for their covariance and
+say little more: their sigmas come out larger than they are, so the trial is the stricter for it."""
 
 PRINCIPAL_POINT = slice(2, 4)
 """Place of cx, cy in the parameters of OPENCV_FISHEYE."""
@@ -100,8 +104,10 @@ def adjust(
     """
     work = pycolmap.Reconstruction(model)
     before = model_stats(work).mean_reprojection_error_px
-    # Squares first: they converge in a fifth of the time and leave little to do.
-    schedule = [adjustment_options(False, 0.0, threads), adjustment_options(False, loss_scale_px, threads)]
+    schedule = [adjustment_options(False, 0.0, threads)]
+    if loss_scale_px > 0:
+        # Squares first: they converge in a fifth of the time and leave little to do.
+        schedule.append(adjustment_options(False, loss_scale_px, threads))
     free = adjustment_options(True, loss_scale_px, threads)
     rounds, stable = _refine(work, cache, options, schedule, lambda r: progress(0.6 * r, "bundle adjustment"))
     found = PrincipalPoint(False, "off")
@@ -122,6 +128,8 @@ def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
     if model.num_reg_images() < MIN_IMAGES:
         return PrincipalPoint(False, "few_images")
     trial = pycolmap.Reconstruction(model)
+    keep_covering_points(trial, TRIAL_POINTS)
+    before = model_stats(trial).median_reprojection_error_px
     adjuster = pycolmap.create_default_ceres_bundle_adjuster(options, _whole(trial), trial)
     adjuster.solve()
     camera = next(iter(trial.cameras.values()))
@@ -141,9 +149,21 @@ def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
         reason = "insignificant"
     elif (np.abs(shift) > MAX_SHIFT_SHARE * max(camera.width, camera.height)).any():
         reason = "implausible"
-    elif error >= model_stats(model).median_reprojection_error_px:
+    elif error >= before:
         reason = "no_gain"
     return PrincipalPoint(reason == "kept", reason, _pair(sigma), _pair(shift))
+
+
+def keep_covering_points(model: Any, per_image: int) -> None:
+    """Delete points in place, all but the longest tracks that give every image `per_image` of them (if it has them)."""
+    points = sorted(model.points3D.items(), key=lambda item: (-item[1].track.length(), item[0]))
+    counts: Counter[int] = Counter()
+    for point_id, point in points:
+        images = {element.image_id for element in point.track.elements}
+        if all(counts[image] >= per_image for image in images):
+            model.delete_point3D(point_id)
+        else:
+            counts.update(images)
 
 
 def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,10 +54,15 @@ def register_rest(
     triangulate(thin, model, options)
     if model.num_reg_images() < len(frames.names):
         options.fix_existing_frames = True
-        model = map_images(thin, options, start_model=model, progress=progress)[0]
+        model = _grown(model, map_images(thin, options, start_model=model, progress=progress))
         options.fix_existing_frames = False
     full = open_cache(graph / "database.db", (), MIN_MATCHES)
     dense = densify(full, model, tracks, frames, options)
     if dense.num_reg_images() < len(frames.names):
-        dense = map_images(full, options, start_model=dense, progress=progress)[0]
+        dense = _grown(dense, map_images(full, options, start_model=dense, progress=progress))
     return dense
+
+
+def _grown(start: Any, models: Sequence[Any]) -> Any:
+    """What mapping on from `start` gave, or `start` where it lost images: a weak model can come apart."""
+    return max([*models, start], key=lambda model: int(model.num_reg_images()))

@@ -1,10 +1,10 @@
-"""Initial pairs of a window, ranked from the verified graph instead of searched by trial (ENGINES section 3)."""
+"""Initial pairs of a window, ranked from the verified graph instead of searched by trial."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from core.verification import CALIBRATED
+from core.verification import CALIBRATED, PLANAR
 from core.viewgraph import PairTable
 
 ENOUGH_ANGLE_DEG = 16.0
@@ -21,7 +21,9 @@ APART_FRAMES = 10
 
 
 def rank_initial_pairs(graph: PairTable, min_inliers: int, n_best: int = 4) -> list[tuple[int, int]]:
-    """The best pairs to start from, best first: calibrated, wide median angle, many inliers.
+    """The best pairs to start from, best first: calibrated before planar, wide median angle, many inliers.
+
+    Two views of a plane allow two motions, so planar pairs come last; on a nearly flat surface there are no others.
 
     Args:
         graph: of the window.
@@ -33,7 +35,8 @@ def rank_initial_pairs(graph: PairTable, min_inliers: int, n_best: int = 4) -> l
     """
     inliers = graph.n_inliers
     score = np.minimum(graph.triangulation_angle_deg, ENOUGH_ANGLE_DEG) * inliers / (inliers + ENOUGH_INLIERS)
-    usable = (graph.config == CALIBRATED) & (inliers >= min_inliers) & (graph.triangulation_angle_deg >= MIN_ANGLE_DEG)
+    score += ENOUGH_ANGLE_DEG * (graph.config == CALIBRATED)
+    usable = np.isin(graph.config, (CALIBRATED, PLANAR)) & (inliers >= min_inliers) & (graph.triangulation_angle_deg >= MIN_ANGLE_DEG)
     order = np.lexsort((np.arange(len(score)), -score))
     chosen: list[tuple[int, int]] = []
     for row in order[usable[order]]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import pycolmap
 
+from core.flags import Flag
 from core.settings.groups import CameraSettings
 from core.sparse.focal import LENS
 
@@ -21,6 +22,9 @@ REGISTERED_SLACK, POINTS_SLACK = 0.95, 0.9
 
 AGREE = 0.05
 """Starts that end within this share of the chosen focal length agree with it."""
+
+MIN_AGREEMENT = 0.5
+"""Where a smaller share of the starts agrees, the clip does not determine the focal length."""
 
 FOV_RANGE_DEG = (10.0, 240.0)
 """A focal length that gives another horizontal field of view is no lens."""
@@ -73,6 +77,7 @@ def choose_lens(
             reason = "no_start_found_a_model"
         else:
             focal, k1, origin = float(chosen["focal_px"]), float(chosen["k1"]), "estimated"
+    agreement = _agreement(starts, focal) if chosen is not None else None
     return {
         "model": MODEL,
         "width": width,
@@ -81,8 +86,9 @@ def choose_lens(
         "focal_from": origin,
         "reason": reason,
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
-        "agreement": _agreement(starts, focal) if chosen is not None else None,
+        "agreement": agreement,
         "starts": [dict(start) for start in starts],
+        "flags": [] if settings.focal != "estimate" or origin == "given" else _doubts(agreement),
     }
 
 
@@ -101,6 +107,15 @@ def _best_start(starts: Sequence[Mapping[str, Any]], source_width: int) -> Mappi
     points = POINTS_SLACK * max(start["points3D"] for start in usable)
     usable = [start for start in usable if start["points3D"] >= points]
     return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
+
+
+def _doubts(agreement: float | None) -> list[dict[str, Any]]:
+    """Flags of an estimate; without any usable start nothing agrees."""
+    share = agreement or 0.0
+    if share >= MIN_AGREEMENT:
+        return []
+    where = "share of the starts that agree on the focal length"
+    return [Flag("focal_uncertain", "warning", share, MIN_AGREEMENT, where).to_dict()]
 
 
 def _agreement(starts: Sequence[Mapping[str, Any]], focal: float) -> float:

@@ -194,7 +194,7 @@ def _search(cache: Any, options: Any, progress: Progress | None) -> list[Any]:
     pipeline = pycolmap.IncrementalPipeline(options, cache, manager)
     _watch(pipeline, lambda: _largest([manager.get(i) for i in range(manager.size())]), cache, progress)
     pipeline.run()
-    # COLMAP keeps a first model below min_model_size as well (ENGINES section 7): filter by size here.
+    # COLMAP keeps a first model below min_model_size as well: filter by size here.
     models = [manager.get(i) for i in range(manager.size())]
     return [model for model in models if model.num_reg_images() >= options.min_model_size]
 

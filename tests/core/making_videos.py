@@ -47,6 +47,22 @@ def make_video(
     return path
 
 
+def make_still_video(path: Path, source: Path, count: int, seed: int = 0) -> Path:
+    """The first frame of `source` over and over, with a sensor's noise: a camera that does not move."""
+    with av.open(str(source)) as container:
+        still = next(container.decode(video=0)).to_ndarray(format="rgb24").astype(np.float64)
+    rng = np.random.default_rng(seed)
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("libx264", rate=12, options={"crf": "20"})
+        stream.height, stream.width = still.shape[:2]
+        stream.pix_fmt = "yuv420p"
+        for _ in range(count):
+            noisy = np.clip(still + rng.normal(0, 3, still.shape), 0, 255).astype(np.uint8)
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(noisy, format="rgb24")))
+        container.mux(stream.encode(None))
+    return path
+
+
 def every_ms(step: int, count: int) -> list[int]:
     return [step * i for i in range(count)]
 

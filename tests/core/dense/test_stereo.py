@@ -123,7 +123,7 @@ def test_fused_cloud_lies_on_the_scene(undistorted, chain):
     scene = undistorted.scene
     to_sphere = np.abs(np.linalg.norm(cloud.vertices - scene.center, axis=1) - scene.radius)
     distance = np.minimum(to_sphere, np.abs(cloud.vertices[:, 2] - scene.wall))
-    assert len(cloud.vertices) > 1000
+    assert len(cloud.vertices) > 3000
     assert np.median(distance) < 0.02
     assert (distance < 0.08).mean() > 0.9
     assert facts["geometric/001"]["n_views"] == 3

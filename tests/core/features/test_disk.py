@@ -8,7 +8,8 @@ import torch
 from kornia.feature import DISK
 
 from core.features.disk import Disk, subpixel_offsets
-from core.features.weights import DISK_WEIGHTS, load_weights
+from core.features.weights import load_weights
+from core.weight_files import DISK_WEIGHTS
 
 
 @pytest.fixture(scope="module", autouse=True)

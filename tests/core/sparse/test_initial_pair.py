@@ -25,11 +25,11 @@ def table(rows: list[tuple[int, int, int, int, float]]) -> PairTable:
 
 def test_a_wide_calibrated_pair_with_many_inliers_comes_first() -> None:
     graph = table([(0, 1, 900, 2, 1.6), (20, 25, 500, 2, 8.0), (40, 45, 60, 2, 9.0), (60, 65, 800, 4, 12.0)])
-    assert rank_initial_pairs(graph, 40) == [(20, 25), (40, 45), (0, 1)]
+    assert rank_initial_pairs(graph, 40) == [(20, 25), (40, 45), (0, 1), (60, 65)]
 
 
-def test_weak_narrow_and_planar_pairs_are_no_candidates() -> None:
-    graph = table([(0, 1, 39, 2, 9.0), (20, 21, 500, 2, 1.4), (40, 41, 500, 4, 9.0), (60, 61, 500, 2, float("nan"))])
+def test_weak_narrow_and_panoramic_pairs_are_no_candidates() -> None:
+    graph = table([(0, 1, 39, 2, 9.0), (20, 21, 500, 2, 1.4), (40, 41, 500, 5, 9.0), (60, 61, 500, 2, float("nan"))])
     assert rank_initial_pairs(graph, 40) == []
 
 

@@ -64,6 +64,14 @@ def test_the_start_that_registers_more_wins_and_then_the_smaller_error() -> None
     assert len(chosen["starts"]) == 3
 
 
+@pytest.mark.parametrize(("agreeing", "flagged"), [(6, False), (3, False), (2, True)])
+def test_starts_that_do_not_agree_are_flagged(agreeing: int, flagged: bool) -> None:
+    starts = [start(40.0 + i, 520.0 + i if i < agreeing else 900.0 + 60 * i, error=0.5 + 0.1 * i) for i in range(6)]
+    chosen = choose_lens(FRAMES, CameraSettings(), starts)
+    assert [flag["code"] for flag in chosen["flags"]] == (["focal_uncertain"] if flagged else [])
+    assert choose_lens(FRAMES, CameraSettings(fov_deg=106.0), starts)["flags"] == []
+
+
 def test_starts_that_found_nothing_fall_back_to_colmap_with_a_reason() -> None:
     starts = [start(40.0, 1375.0, registered=0, points=0), start(55.0, 9000.0), start(70.0, 500.0, points=20)]
     chosen = choose_lens(FRAMES, CameraSettings(), starts)

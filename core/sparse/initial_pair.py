@@ -36,7 +36,8 @@ def rank_initial_pairs(graph: PairTable, min_inliers: int, n_best: int = 4) -> l
     inliers = graph.n_inliers
     score = np.minimum(graph.triangulation_angle_deg, ENOUGH_ANGLE_DEG) * inliers / (inliers + ENOUGH_INLIERS)
     score += ENOUGH_ANGLE_DEG * (graph.config == CALIBRATED)
-    usable = np.isin(graph.config, (CALIBRATED, PLANAR)) & (inliers >= min_inliers) & (graph.triangulation_angle_deg >= MIN_ANGLE_DEG)
+    usable = np.isin(graph.config, (CALIBRATED, PLANAR)) & (inliers >= min_inliers)
+    usable &= graph.triangulation_angle_deg >= MIN_ANGLE_DEG
     order = np.lexsort((np.arange(len(score)), -score))
     chosen: list[tuple[int, int]] = []
     for row in order[usable[order]]:

@@ -37,10 +37,15 @@ def stage_weights(graph: Graph, present: Mapping[str, StageCount]) -> dict[str, 
 
 
 def plan_share(graph: Graph, counts: Mapping[str, StageCount]) -> float:
-    """How far the plan is, in [0, 1], rounded down to `STEP`."""
+    """How far the plan is, in [0, 1]."""
     weights = stage_weights(graph, counts)
     total = sum(weights.values())
     if not total:
         return 0.0
     done = sum(weight * counts[name].share for name, weight in weights.items() if name in counts)
-    return min(1.0, int(done / total / STEP + 1e-9) * STEP)
+    return min(1.0, done / total)
+
+
+def in_steps(share: float) -> float:
+    """`share` rounded down to `STEP`."""
+    return int(share / STEP + 1e-9) * STEP

@@ -16,7 +16,7 @@ from store.db import Database
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import changed
 from store.models import ACTIVE_INSPECTION, OVER_TASK, CaseRow, Inspection, Task
-from store.progress import StageCount, plan_share
+from store.progress import StageCount, in_steps, plan_share
 
 PUBLISH = "publish"
 """Name of what happens after the last stage: the files of the contract are put into the artifact store."""
@@ -118,7 +118,7 @@ class Statuses:
     def _progress(self, row: Inspection, state: str, stages: Iterable[StageStatus]) -> float:
         if state == "succeeded":
             return 1.0
-        share = plan_share(self.graph, {stage.name: stage.count for stage in stages if stage.count.total})
+        share = in_steps(plan_share(self.graph, {stage.name: stage.count for stage in stages if stage.count.total}))
         return max(row.progress, min(share, _ALMOST))
 
     def _remember(self, status: InspectionStatus) -> None:

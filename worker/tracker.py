@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from store.graph import Graph
 from store.models import OVER_TASK
+from store.progress import StageCount, plan_share, stage_weights
 from store.records import TaskView
 from worker.outcome import Event, EventKind
 
@@ -49,9 +50,9 @@ class Tracker:
     def event(self, kind: EventKind, key: str = "", message: str = "", state: str = "") -> Event:
         """An event of this moment; its fraction never falls."""
         stage = key.split("/", 1)[0]
-        own = self._stages.get(stage, [])
-        done = sum(task.state in OVER_TASK for task in own)
-        self._fraction = max(self._fraction, min(1.0, self._share()))
+        counts = self._counts()
+        own = counts.get(stage, StageCount(0, 0))
+        self._fraction = max(self._fraction, plan_share(self._graph, counts))
         return Event(
             kind=kind,
             fraction=1.0 if kind == "finished" and state == "succeeded" else self._fraction,
@@ -59,32 +60,21 @@ class Tracker:
             stage=stage,
             key=key,
             state=state,
-            done=done,
-            total=len(own),
-            stage_fraction=self._stage_share(stage) if own else 0.0,
+            done=own.over,
+            total=own.total,
+            stage_fraction=own.share,
             message=message,
         )
 
-    def _stage_share(self, stage: str) -> float:
-        own = self._stages.get(stage, [])
-        done = sum(1.0 if task.state in OVER_TASK else self._running.get(task.key, 0.0) for task in own)
-        return done / len(own) if own else 0.0
-
-    def _weights(self) -> dict[str, float]:
-        """Weight of every stage that this run has; one that was passed by without tasks has none."""
-        present = self._stages
-        names = list(self._graph.stages)
-        reached = max((names.index(stage) for stage in present), default=-1)
+    def _counts(self) -> dict[str, StageCount]:
         return {
-            name: self._graph.stages[name].weight
-            for position, name in enumerate(names)
-            if name in present or position > reached
+            stage: StageCount(
+                total=len(own),
+                over=sum(task.state in OVER_TASK for task in own),
+                running=sum(self._running.get(task.key, 0.0) for task in own if task.state not in OVER_TASK),
+            )
+            for stage, own in self._stages.items()
         }
-
-    def _share(self) -> float:
-        weights = self._weights()
-        total = sum(weights.values())
-        return sum(weight * self._stage_share(stage) for stage, weight in weights.items()) / total if total else 0.0
 
     def _eta(self) -> float | None:
         """Seconds left: known tasks at the mean of their stage, the rest at what a unit of weight took so far."""
@@ -92,17 +82,18 @@ class Tracker:
         for task in self._tasks.values():
             if task.state == "succeeded" and task.seconds is not None:
                 took.setdefault(task.stage, []).append(task.seconds)
-        weights = self._weights()
-        done_weight = sum(weights[stage] * self._stage_share(stage) for stage in took)
+        counts = self._counts()
+        weights = stage_weights(self._graph, counts)
+        done_weight = sum(weights[stage] * counts[stage].share for stage in took)
         if done_weight <= 0:
             return None
         second_per_weight = sum(sum(seconds) for seconds in took.values()) / done_weight
         left = 0.0
         for stage, weight in weights.items():
-            own = self._stages.get(stage, [])
-            rest = len(own) * (1 - self._stage_share(stage))
+            count = counts.get(stage, StageCount(0, 0))
+            rest = count.total * (1 - count.share)
             side_by_side = self._workers if self._graph.stages[stage].fan_out else 1
             mean = sum(took[stage]) / len(took[stage]) if stage in took else None
-            seconds = rest * mean if mean is not None else weight * (1 - self._stage_share(stage)) * second_per_weight
+            seconds = rest * mean if mean is not None else weight * (1 - count.share) * second_per_weight
             left += seconds / side_by_side
         return round(left, 1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,6 +13,7 @@ import httpx
 T = TypeVar("T")
 _PATIENCE_S = 120.0
 _PAUSE_S = 0.3
+_CHUNK = 16 << 10
 _TUS = {"Tus-Resumable": "1.0.0"}
 OVER = ("succeeded", "partial", "failed", "cancelled")
 
@@ -20,8 +21,10 @@ OVER = ("succeeded", "partial", "failed", "cancelled")
 class SoakClient:
     """Speaks the HTTP API of one server that may be away at any moment."""
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, on_transfer: Callable[[str], None] = lambda _kind: None) -> None:
+        """`on_transfer` is called in the middle of every ``upload`` and ``download``, with which of them it is."""
         self._http = httpx.Client(base_url=url, timeout=10.0)
+        self._on_transfer = on_transfer
 
     def submit(self, name: str, video: Path, annotations: Path, parameters: dict[str, Any]) -> str:
         """Upload both files resumably and create an inspection; returns its id."""
@@ -68,8 +71,10 @@ class SoakClient:
         with self._http.stream("GET", item["link"], headers=headers) as answer:
             answer.raise_for_status()
             with target.open("ab" if answer.status_code == httpx.codes.PARTIAL_CONTENT else "wb") as write:
-                for chunk in answer.iter_bytes():
+                for chunk in answer.iter_bytes(_CHUNK):
                     write.write(chunk)
+                    if target.stat().st_size < item["size"]:
+                        self._on_transfer("download")
         return True
 
     def _upload(self, path: Path) -> str:
@@ -86,9 +91,20 @@ class SoakClient:
         head.raise_for_status()
         offset = int(head.headers["Upload-Offset"])
         if offset < len(data):
-            headers = {**_TUS, "Upload-Offset": str(offset), "Content-Type": "application/offset+octet-stream"}
-            self._http.patch(location, headers=headers, content=data[offset:]).raise_for_status()
+            headers = {
+                **_TUS,
+                "Upload-Offset": str(offset),
+                "Content-Type": "application/offset+octet-stream",
+                "Content-Length": str(len(data) - offset),
+            }
+            self._http.patch(location, headers=headers, content=self._rest(data, offset)).raise_for_status()
         return True
+
+    def _rest(self, data: bytes, offset: int) -> Iterator[bytes]:
+        middle = (offset + len(data)) // 2
+        yield data[offset:middle]
+        self._on_transfer("upload")
+        yield data[middle:]
 
     def _send(self, request: Callable[[], httpx.Response]) -> httpx.Response:
         def checked() -> httpx.Response:

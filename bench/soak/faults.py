@@ -29,8 +29,12 @@ class Faults:
     postgres: PostgresServer
     lease_s: float
     rng: random.Random
+    transfers: int = 0
+    """Uploads, and as many downloads, that are cut off by killing the API."""
     done: list[str] = field(default_factory=list)
     """Names of the faults done, in order."""
+    _chosen: int = 0
+    _mutex: threading.Lock = field(default_factory=threading.Lock)
 
     def any(self) -> None:
         """One fault; in the first rounds every kind comes once."""
@@ -42,9 +46,11 @@ class Faults:
             self.restart_postgres,
             self.freeze_worker,
         ]
-        kind = kinds[len(self.done)] if len(self.done) < len(kinds) else self.rng.choice(kinds)
+        kind = kinds[self._chosen] if self._chosen < len(kinds) else self.rng.choice(kinds)
+        self._chosen += 1
         kind()
-        self.done.append(kind.__name__)
+        with self._mutex:
+            self.done.append(kind.__name__)
 
     def kill_worker(self) -> None:
         """Kill -9 of one worker."""
@@ -56,8 +62,16 @@ class Faults:
             self.fleet.signal(name, signal.SIGKILL)
 
     def kill_api(self) -> None:
-        """Kill -9 of the API; uploads and downloads are under way all the time."""
+        """Kill -9 of the API at any moment."""
         self.fleet.signal("api", signal.SIGKILL)
+
+    def in_transfer(self, kind: str) -> None:
+        """Kill -9 of the API in the middle of an upload or a download: of some of each kind."""
+        name = f"kill_api_during_{kind}"
+        with self._mutex:
+            if self.done.count(name) < self.transfers:
+                self.done.append(name)
+                self.fleet.signal("api", signal.SIGKILL)
 
     def empty_redis(self) -> None:
         """The broker comes back without a memory."""

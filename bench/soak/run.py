@@ -7,11 +7,10 @@ import random
 import shutil
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,8 @@ from bench.soak.fleet import Fleet
 from bench.soak.servers import PostgresServer, RedisServer
 from store.db import Database
 
+_TRANSFERS = 2
+"""Uploads, and as many downloads, in the middle of which the API is killed."""
 _CORE, _TOY = "store.graph:CORE_GRAPH", "bench.soak.toy:GRAPH"
 
 
@@ -84,41 +85,41 @@ def undisturbed(settings: SoakSettings, folder: Path) -> Outcome:
     done = folder / "outcome.json"
     if done.is_file():
         return Outcome(**json.loads(done.read_text(encoding="utf-8")))
-    outcome = _run(settings, folder, lambda *_: None)
+    outcome = _run(settings, folder, harm=False)
     done.write_text(json.dumps(asdict(outcome), indent=1), encoding="utf-8")
     return outcome
 
 
 def disturbed(settings: SoakSettings, folder: Path, reference: Path) -> Outcome:
     """Run the same jobs with faults, and compare."""
-    outcome = _run(settings, folder, partial(_disturb, settings))
+    outcome = _run(settings, folder, harm=True)
     for job in range(settings.jobs):
         found = differences(reference / "files" / _name(job), folder / "files" / _name(job))
         outcome.wrong += [f"{_name(job)}: {difference}" for difference in found]
     return outcome
 
 
-Disturb = Callable[[Faults, Outcome, threading.Event], None]
-
-
-def _run(settings: SoakSettings, folder: Path, disturb: Disturb) -> Outcome:
+def _run(settings: SoakSettings, folder: Path, *, harm: bool) -> Outcome:
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "files").mkdir(parents=True)
     outcome, over = Outcome(), threading.Event()
     with _servers(folder) as (redis, postgres):
         fleet = Fleet(folder / "data", settings.environment(redis, postgres), settings.workers)
         fleet.start()
-        faults = Faults(fleet, redis, postgres, settings.lease_s, random.Random(settings.seed))
+        cut = _TRANSFERS if harm else 0
+        faults = Faults(fleet, redis, postgres, settings.lease_s, random.Random(settings.seed), cut)
         began = time.monotonic()
-        breaker = threading.Thread(target=disturb, args=(faults, outcome, over))
-        breaker.start()
+        breaker = threading.Thread(target=_disturb, args=(settings, faults, outcome, over))
+        if harm:
+            breaker.start()
         try:
             with ThreadPoolExecutor(settings.jobs) as clients:
-                jobs = [clients.submit(_job, settings, fleet.url, folder, job, over) for job in range(settings.jobs)]
+                jobs = [clients.submit(_job, settings, faults, folder, job, over) for job in range(settings.jobs)]
                 results = [job.result() for job in jobs]
         finally:
             over.set()
-            breaker.join()
+            if harm:
+                breaker.join()
         outcome.seconds = round(time.monotonic() - began, 1)
         for job, (state, wrong) in enumerate(results):
             outcome.states[_name(job)] = state
@@ -144,14 +145,17 @@ def _disturb(settings: SoakSettings, faults: Faults, outcome: Outcome, over: thr
     duplicates.start()
     while len(faults.done) < settings.faults and not over.wait(faults.rng.uniform(0.5, 1.5) * settings.pause_s):
         faults.any()
+    over.wait()
     duplicates.stop()
     outcome.faults, outcome.duplicates = faults.done, duplicates.sent
 
 
-def _job(settings: SoakSettings, url: str, folder: Path, job: int, over: threading.Event) -> tuple[str, list[str]]:
-    """Submit, wait, download; the clients come one after the other, so uploads and downloads go on all the time."""
+def _job(
+    settings: SoakSettings, faults: Faults, folder: Path, job: int, over: threading.Event
+) -> tuple[str, list[str]]:
+    """Submit, wait, download; the clients begin one after the other."""
     over.wait(job * settings.pause_s / 4)
-    client = SoakClient(url)
+    client = SoakClient(faults.fleet.url, faults.in_transfer)
     inspection_id = client.submit(_name(job), settings.video, settings.annotations, settings.parameters(job))
     found = client.wait(inspection_id, settings.job_s)
     wrong = [

@@ -11,7 +11,7 @@ from core.errors import BadInput
 from core.graph import STAGES
 from core.intake import check_input
 from worker.outcome import Outcome
-from worker.run import run_inspection
+from worker.run import Names, run_inspection
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -34,6 +34,7 @@ def command(parsed: argparse.Namespace) -> int:
             on_event=display.show,
             from_stage=parsed.from_stage,
             force=parsed.force,
+            names=Names(wanted.label, wanted.external_id),
         )
     code = _code(outcome)
     if isinstance(display, progress.JsonDisplay):

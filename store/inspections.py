@@ -34,15 +34,15 @@ class Inspections:
     db: Database
     graph: Graph = CORE_GRAPH
 
-    def create(self, inspection_id: str, files: InputFiles, settings: Settings, out: str) -> None:
-        """A new inspection with the first tasks of its plan."""
+    def create(self, inspection_id: str, files: InputFiles, settings: Settings, out: str, **more: Any) -> None:
+        """A new inspection with the first tasks of its plan; `more` are further columns, e.g. owner and label."""
         with self.db.write() as session:
-            self.create_in(session, inspection_id, files, settings, out)
+            self.create_in(session, inspection_id, files, settings, out, **more)
 
     def create_in(
         self, session: Session, inspection_id: str, files: InputFiles, settings: Settings, out: str, **more: Any
     ) -> None:
-        """The same inside the caller's transaction; `more` are further columns, e.g. owner and label."""
+        """The same inside the caller's transaction."""
         now = self.db.now(session)
         inspection = Inspection(
             id=inspection_id,
@@ -177,6 +177,8 @@ def _view(row: Inspection) -> InspectionView:
         out=row.out,
         failed_stage=row.failed_stage,
         error=row.error,
+        label=row.label,
+        external_id=row.external_id,
     )
 
 

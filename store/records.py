@@ -93,3 +93,5 @@ class InspectionView:
     out: str
     failed_stage: str | None
     error: Mapping[str, Any] | None
+    label: str = ""
+    external_id: str = ""

@@ -76,6 +76,8 @@ def record_of(
         failed_stage=inspection.failed_stage or "",
         reason=str(error.get("code", "")),
         message=str(error.get("message", "")),
+        label=inspection.label,
+        external_id=inspection.external_id,
     )
     return record, folders
 

@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import FrameType
 
@@ -38,6 +39,14 @@ _LOCAL = "local"
 """Id of the one inspection in the plan of an output folder."""
 
 
+@dataclass(frozen=True)
+class Names:
+    """The caller's own names of a run."""
+
+    label: str = ""
+    external_id: str = ""
+
+
 def run_inspection(
     video: Path,
     annotations: Path | None,
@@ -48,6 +57,7 @@ def run_inspection(
     on_event: OnEvent | None = None,
     from_stage: str | None = None,
     force: bool = False,
+    names: Names = Names(),
     graph: Graph = CORE_GRAPH,
 ) -> Outcome:
     """Run or continue one inspection in the folder `out`.
@@ -57,6 +67,7 @@ def run_inspection(
         on_event: called from runner threads, one call at a time.
         from_stage: forget the results of this stage and of all that depend on it.
         force: accept a folder that holds the result of another input, or files under the names of the contract.
+        names: what the caller calls the run; kept beside the result.
         graph: stages to run; another one in tests.
 
     Ctrl-C and SIGTERM stop children, release leases and return the state ``interrupted``.
@@ -72,7 +83,7 @@ def run_inspection(
         database = open_sqlite(folder.database)
         try:
             run = _Run(folder, database, graph, workers or available_cores(), on_event)
-            run.open(files, settings, from_stage, force)
+            run.open(files, settings, names, from_stage, force)
             with _terminable():
                 return run.work()
         except OSError as error:
@@ -135,7 +146,7 @@ class _Run:
         owner = f"run:{os.getpid()}"
         self._runners = LocalRunners(runner, owner, workers, deployment.heartbeat_s, inspection_id=_LOCAL)
 
-    def open(self, files: InputFiles, settings: Settings, from_stage: str | None, force: bool) -> None:
+    def open(self, files: InputFiles, settings: Settings, names: Names, from_stage: str | None, force: bool) -> None:
         """Put the plan in order: what crashed runs left, another input, forgotten stages, new parameters."""
         known = next(iter(self._inspections.find()), None)
         if not force:
@@ -146,11 +157,11 @@ class _Run:
             stages = self._inspections.stages_from(_LOCAL, from_stage)
             self._remove(name for name, path in self._inspections.known_results().items() if _stage(path) in stages)
         if known is None:
-            self._inspections.create(_LOCAL, files, settings, str(self._folder.out))
+            self._inspections.create(_LOCAL, files, settings, str(self._folder.out), **asdict(names))
         else:
             # Nobody else can work here while this run holds the folder: every lease is one of a dead run.
             self._plan.take_over(_LOCAL)
-            self._inspections.reopen(_LOCAL, files, settings)
+            self._inspections.reopen(_LOCAL, files, settings, **asdict(names))
 
     def _refuse_foreign(self, known: InspectionView | None, files: InputFiles) -> None:
         out = self._folder.out

@@ -68,6 +68,9 @@ class RunRecord:
     """Code that says why the state is not ``succeeded``."""
     message: str = ""
     """The same in one sentence."""
+    label: str = ""
+    external_id: str = ""
+    """The caller's own names of the run."""
 
     def facts(self, key: str) -> Facts:
         """Facts of a finished task; empty when it did not succeed or is not in the plan."""

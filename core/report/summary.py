@@ -26,6 +26,8 @@ def build_summary(
         "reason": record.reason or None,
         "message": record.message or None,
         "verdict": verdict,
+        "label": record.label or None,
+        "external_id": record.external_id or None,
         "preset": record.settings.preset,
         "parameters": parameters,
         "inputs": dict(record.inputs),

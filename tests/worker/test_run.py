@@ -13,7 +13,7 @@ from core.errors import BadInput
 from core.settings import make_settings
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH
-from worker.run import run_inspection
+from worker.run import Names, run_inspection
 
 ALL = ["join", "last", "part/000", "part/001", "split"]
 
@@ -77,6 +77,16 @@ def test_changed_parameters_recompute_only_what_they_touch(
     place.run(options)
     assert place.started() == sorted(again)
     place.run()
+    assert place.started() == []
+
+
+def test_the_callers_names_stand_beside_the_result_and_cost_no_work(place: Workplace) -> None:
+    place.run(names=Names("stage 2", "WO-1187"))
+    place.started()
+    for label in ("stage 2", "stage 3"):
+        place.run(names=Names(label, "WO-1187"))
+        summary = json.loads((place.out / "summary.json").read_text())
+        assert (summary["label"], summary["external_id"]) == (label, "WO-1187")
     assert place.started() == []
 
 

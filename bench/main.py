@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.service import command as service
 from bench.soak import command as soak
 from bench.speed import command as speed
 from core.errors import BadInput, BladeAtlasError
@@ -38,6 +39,9 @@ def make_parser() -> argparse.ArgumentParser:
     soak_parser = commands.add_parser("soak", help="run jobs through a whole deployment while its processes are killed")
     soak.add_arguments(soak_parser)
     soak_parser.set_defaults(run=soak.command)
+    service_parser = commands.add_parser("service", help="time uploads, downloads, many clients, and the queue")
+    service.add_arguments(service_parser)
+    service_parser.set_defaults(run=service.command)
     return parser
 
 

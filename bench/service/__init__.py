@@ -1,0 +1,1 @@
+"""How fast the service is: uploads, downloads, many clients, and what it costs beside the stages themselves."""

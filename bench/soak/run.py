@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import shutil
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -103,7 +104,7 @@ def _run(settings: SoakSettings, folder: Path, *, harm: bool) -> Outcome:
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "files").mkdir(parents=True)
     outcome, over = Outcome(), threading.Event()
-    with _servers(folder) as (redis, postgres):
+    with _servers() as (redis, postgres):
         fleet = Fleet(folder / "data", settings.environment(redis, postgres), settings.workers)
         fleet.start()
         cut = _TRANSFERS if harm else 0
@@ -129,15 +130,18 @@ def _run(settings: SoakSettings, folder: Path, *, harm: bool) -> Outcome:
 
 
 @contextmanager
-def _servers(folder: Path) -> Iterator[tuple[RedisServer, PostgresServer]]:
-    redis, postgres = RedisServer(), PostgresServer(folder / "postgres")
-    redis.start()
-    try:
-        postgres.start()
-        yield redis, postgres
-    finally:
-        redis.kill()
-        postgres.kill()
+def _servers() -> Iterator[tuple[RedisServer, PostgresServer]]:
+    # PostgreSQL runs as another user when this one is root, and must be able to reach its folder.
+    with tempfile.TemporaryDirectory(prefix="bladeatlas-soak-") as place:
+        Path(place).chmod(0o755)
+        redis, postgres = RedisServer(), PostgresServer(Path(place) / "postgres")
+        redis.start()
+        try:
+            postgres.start()
+            yield redis, postgres
+        finally:
+            redis.kill()
+            postgres.kill()
 
 
 def _disturb(settings: SoakSettings, faults: Faults, outcome: Outcome, over: threading.Event) -> None:

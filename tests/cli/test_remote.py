@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,11 @@ def test_submit_watch_and_download_the_sample(
     assert row.settings["matching"]["window"] == 8
     assert "blade 4" in call("status", one)[1]
     backend.work(one)
+    # The server may show what it looked up a moment ago.
+    deadline = time.monotonic() + 10
+    while "running" not in call("status", one)[1]:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
     threading.Timer(0.5, backend.publish, (one, {"mapping/t.csv": b"1", "dense/f.ply": b"2" * 100})).start()
     code, out = call("watch", one, "--json")
     states = [json.loads(line)["state"] for line in out.splitlines()]

@@ -18,6 +18,7 @@ from worker.periodic import Periodic
 from worker.polling import PollingRunners
 from worker.queue import TaskQueue
 from worker.service import WorkerService, unique_name
+from worker.slots import Slots
 
 _log = logger("bladeatlas.worker")
 
@@ -62,10 +63,18 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
     runner = service.runner()
     keeper = LeaseKeeper(runner, settings.heartbeat_s)
 
-    def run(name: str) -> None:
-        lease = patiently(plan.db, lambda: plan.lease(service.name, queues=(name,)), runner.interrupted)
+    def run_next(queues: Sequence[str]) -> bool:
+        lease = patiently(plan.db, lambda: plan.lease(service.name, queues=queues), runner.interrupted)
         if lease is not None:
             runner.run(lease)
+        return lease is not None
+
+    slots = Slots(workers, run_next, runner.interrupted, quiet_s=settings.sweep_s)
+    # A broker that stops delivering to this worker costs time, not the job.
+    helpers = [
+        Periodic("without_message", partial(slots.without_message, service.queues), settings.sweep_s)
+        for _ in range(workers)
+    ]
 
     def keep() -> None:
         try:
@@ -77,11 +86,13 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
             signal.raise_signal(signal.SIGTERM)
 
     thread = threading.Thread(target=keep, name="heartbeat", daemon=True)
-    for part in (thread, service, sender):
+    for part in (thread, service, sender, *helpers):
         part.start()
     try:
-        return queue.work(run, service.name, service.queues, workers, runner.interrupted.set)
+        return queue.work(slots.on_message, service.name, service.queues, workers, runner.interrupted.set)
     finally:
+        for helper in helpers:
+            helper.stop()
         sender.nudge()
         sender.stop()
         keeper.stopped.set()

@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from bench.service.interrupted import interrupted
 from bench.service.load import load
 from bench.service.overhead import overhead, scaling
 from bench.service.transfers import downloads, uploads
@@ -15,7 +16,7 @@ from bench.speed.timing import Table
 from core.errors import BadInput
 from core.settings import PRESET_NAMES
 
-NAMES = ("uploads", "downloads", "load", "overhead", "scaling")
+NAMES = ("uploads", "downloads", "interrupted", "load", "overhead", "scaling")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,6 +33,7 @@ def command(arguments: argparse.Namespace) -> None:
     known: dict[str, Callable[[Path], Table]] = {
         "uploads": lambda folder: uploads(folder, repeat),
         "downloads": lambda folder: downloads(folder, repeat),
+        "interrupted": interrupted,
         "load": load,
         "overhead": lambda folder: overhead(folder, repeat, preset),
         "scaling": lambda folder: scaling(folder, repeat, preset),

@@ -86,9 +86,9 @@ def begin_upload(server: Server, size: int) -> str:
     return f"{server.url}{made.headers['Location']}"
 
 
-def upload_arguments(location: str, file: Path) -> list[str]:
-    """How curl sends a whole file to an upload in one PATCH, streamed."""
-    headers = {**TUS, "Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
+def upload_arguments(location: str, file: Path, offset: int = 0) -> list[str]:
+    """How curl sends a whole file to an upload in one PATCH, streamed, as what follows `offset`."""
+    headers = {**TUS, "Upload-Offset": str(offset), "Content-Type": "application/offset+octet-stream"}
     return [
         *(word for name, value in headers.items() for word in ("-H", f"{name}: {value}")),
         *("-H", "Expect:", "-X", "PATCH", "-T", str(file), location),

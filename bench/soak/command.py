@@ -8,6 +8,7 @@ from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 
+from bench.soak.clip import cut
 from bench.soak.run import Outcome, SoakSettings, disturbed, undisturbed
 from core.errors import StageFailed
 
@@ -31,17 +32,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{name}", type=int, default=getattr(_DEFAULTS, name), metavar="N", help=text)
     parser.add_argument("--pause-s", type=float, default=_DEFAULTS.pause_s, help="mean time between faults")
     parser.add_argument("--preset", default=_DEFAULTS.preset)
+    parser.add_argument("--options", type=json.loads, default={}, metavar="JSON", help="of every job, over the preset")
+    parser.add_argument("--frames", type=int, default=0, metavar="N", help="take the first N frames, 480 px wide")
 
 
 def command(arguments: argparse.Namespace) -> None:
     """Run both deployments; StageFailed when anything is not as it must be."""
-    names = ("jobs", "faults", "workers", "seed", "toy", "pause_s", "preset")
-    settings = SoakSettings(
-        arguments.video.resolve(),
-        arguments.annotations.resolve(),
-        **{name: getattr(arguments, name) for name in names},
-    )
+    names = ("jobs", "faults", "workers", "seed", "toy", "pause_s", "preset", "options")
     out = arguments.out.resolve()
+    video, annotations = arguments.video.resolve(), arguments.annotations.resolve()
+    if arguments.frames:
+        video, annotations = cut(video, annotations, out / "clip", arguments.frames, width=480)
+    settings = SoakSettings(video, annotations, **{name: getattr(arguments, name) for name in names})
     kind = f"{'toy' if settings.toy else settings.preset}-{settings.jobs}"
     reference = undisturbed(settings, out / f"undisturbed-{kind}")
     found = disturbed(settings, out / f"disturbed-{kind}", out / f"undisturbed-{kind}")

@@ -45,6 +45,8 @@ class SoakSettings:
     lease_s: float = 5.0
     job_s: float = 3600.0
     """A job that takes longer is lost."""
+    options: dict[str, Any] = field(default_factory=dict)
+    """Of every job, over the preset."""
 
     def environment(self, redis: RedisServer, postgres: PostgresServer) -> dict[str, str]:
         """Of every process under test."""
@@ -64,7 +66,8 @@ class SoakSettings:
 
     def parameters(self, job: int) -> dict[str, Any]:
         """Of one job; no two share a result, so every job is computed."""
-        options = {"features.max_keypoints": 2000 + 10 * job, "compute.threads": 1, "seed": 0}
+        own = {"features.max_keypoints": 2000 + 10 * job, "compute.threads": 1, "seed": 0}
+        options = {**self.options, **own}
         return {"preset": self.preset, "options": options, "label": "soak"}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.service import transfers
+from bench.service import interrupted, transfers
 from bench.service.overhead import covered
 from bench.speed.timing import Table
 
@@ -42,3 +42,13 @@ def test_uploads_reach_the_service_and_the_sink(tmp_path: Path, monkeypatch: pyt
 def test_a_download_in_ranges_is_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(transfers, "DOWNLOAD_BYTES", 16 << 20)
     assert values(transfers.downloads(tmp_path, 1))["bytes are the same"] == "true"
+
+
+def test_an_upload_goes_on_after_its_client_or_server_was_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(interrupted, "KILLS", 2)
+    found = values(interrupted.interrupted(tmp_path))
+    killed = [int(str(found[f"{who} killed in the middle of a PATCH"])) for who in ("client", "server")]
+    assert sum(killed) == 2
+    assert found["files whose SHA-256 is wrong after going on"] == 0

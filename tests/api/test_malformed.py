@@ -10,9 +10,10 @@ import pytest
 from fastapi.testclient import TestClient
 
 from api.problems import MEDIA_TYPE
-from tests.api.conftest import TUS, Backend
-from tests.api.test_creating import form, leftovers
+from tests.api.conftest import TUS, Backend, client_of
+from tests.api.test_creating import form, leftovers, post
 from tests.api.test_uploads import begin
+from tests.core.making_videos import every_ms, make_video
 
 _FORM = form(
     (
@@ -108,3 +109,26 @@ def test_damaged_headers_of_uploads(backend: Backend, client: TestClient) -> Non
     found = backend.services.uploads.find(url.rsplit("/", 1)[1], "")
     assert found is not None
     assert found.offset <= 50
+
+
+def test_damaged_videos(backend: Backend, tmp_path: Path) -> None:
+    """Headers of containers and of the streams in them, through the real decoder in its child process."""
+    client = client_of(backend.with_settings(max_active=1000))
+    source = make_video(backend.services.settings.data_dir / "whole.mp4", every_ms(100, 6))
+    whole = source.read_bytes()
+    source.unlink()
+    header = whole.index(b"moov")
+    chance, statuses = random.Random(4), set()
+    for number in range(40):
+        start = (0, header)[number % 2]
+        part = slice(start, start + 1500)
+        video = whole[: part.start] + damaged(whole[part], chance) + whole[part.stop :]
+        answer = post(client, video)
+        statuses.add(answer.status_code)
+        assert answer.status_code in (202, 422), answer.text
+        if answer.status_code == 422:
+            assert answer.headers["content-type"] == MEDIA_TYPE
+            assert answer.json()["code"]
+    assert 422 in statuses
+    assert leftovers(backend) == []
+    assert outside(backend, tmp_path) == []

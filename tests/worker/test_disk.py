@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,29 +11,15 @@ import pytest
 from core.errors import BadInput, DiskFull
 from core.settings import make_settings
 from tests.worker.conftest import Workplace
+from tests.worker.disks import fill, mounted
 from tests.worker.fake_stages import GRAPH
 from worker.run import run_inspection
 
 
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Iterator[Path]:
-    """A file system of 4 MiB, where the system lets one be mounted."""
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", str(folder)], capture_output=True)
-    if mounted.returncode:
-        pytest.skip("no file system can be mounted here")
-    yield folder
-    subprocess.run(["umount", str(folder)], check=True)
-
-
-def fill(folder: Path, leave: int) -> Path:
-    """A file that leaves `leave` bytes of the disk."""
-    stat = os.statvfs(folder)
-    filler = folder / "filler"
-    with filler.open("wb") as stream:
-        stream.write(b"x" * max(0, stat.f_bavail * stat.f_frsize - leave))
-    return filler
+    with mounted(tmp_path / "disk", mebibytes=4) as folder:
+        yield folder
 
 
 @pytest.mark.parametrize("leave", [1_100_000, 1_500_000])

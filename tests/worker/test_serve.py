@@ -16,6 +16,7 @@ from sqlalchemy import insert
 from store.db import open_sqlite
 from store.models import ApiKey, Inspection
 from tests.worker.deployment import Deployment, wait_for
+from tests.worker.disks import fill, mounted
 
 ALL = ["join", "last", "part/000", "part/001", "split"]
 
@@ -64,6 +65,31 @@ def test_a_server_runs_jobs_and_stops_cleanly(place: Deployment) -> None:
     assert '"event": "task_ended"' in place.said()
 
 
+def test_a_full_store_refuses_new_work_and_nothing_else(tmp_path: Path) -> None:
+    done, begin = "0" * 32, {"Tus-Resumable": "1.0.0", "Upload-Length": "1000"}
+    with mounted(tmp_path / "disk", mebibytes=48) as disk:
+        database = open_sqlite(disk / "bladeatlas.db")
+        place = Deployment(disk, database, {"BLADEATLAS_RESERVE_BYTES": str(16 << 20)})
+        try:
+            address = serve(place)
+            place.create(done)
+            place.wait(done)
+            place.create("one", part__000={"sleep_s": 4})
+            wait_for(lambda: place.started("one")["part/000"] == 1)
+            filler = fill(disk, leave=8 << 20)
+            assert httpx.post(f"{address}/v1/uploads", headers=begin).status_code == 507
+            files = {"video": ("v.mp4", b"v" * 100)}
+            assert httpx.post(f"{address}/v1/inspections", files=files).status_code == 507
+            assert httpx.get(f"{address}/v1/inspections/{done}/artifacts/summary.json").status_code == 200
+            place.wait("one")
+            assert place.accepted_once("one")
+            filler.unlink()
+            assert httpx.post(f"{address}/v1/uploads", headers=begin).status_code == 201
+        finally:
+            place.stop()
+            database.close()
+
+
 def test_after_kill_9_nothing_lives_and_the_next_server_goes_on_at_once(place: Deployment) -> None:
     place.create("one", part__000={"sleep_s": 60, "helper": True, "deaf": True, "times": 1})
     serve(place)
@@ -100,7 +126,8 @@ def test_a_publisher_that_was_cut_off_is_repaired(place: Deployment) -> None:
     place.wait("one")
     assert place.artifacts("one") == before
     assert (stale.parent / "summary.json").is_file()
-    assert not stale.exists()
+    # Swept after the commit that shows the files.
+    wait_for(lambda: not stale.exists())
 
 
 def test_a_deleted_inspection_leaves_nothing_but_what_others_use(place: Deployment) -> None:

@@ -86,8 +86,10 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
             signal.raise_signal(signal.SIGTERM)
 
     thread = threading.Thread(target=keep, name="heartbeat", daemon=True)
-    for part in (thread, service, sender, *helpers):
+    for part in (thread, service, sender):
         part.start()
+    for helper in helpers:
+        helper.start()
     try:
         return queue.work(slots.on_message, service.name, service.queues, workers, runner.interrupted.set)
     finally:

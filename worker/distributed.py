@@ -93,6 +93,7 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
     try:
         return queue.work(slots.on_message, service.name, service.queues, workers, runner.interrupted.set)
     finally:
+        runner.interrupted.set()
         for helper in helpers:
             helper.stop()
         sender.nudge()

@@ -149,7 +149,8 @@ class Inspections:
         """Take up results whose files were finished but whose commit a crash cut off."""
         with self.db.write() as session:
             now = self.db.now(session)
-            for result in results:
+            # In one order everywhere, so that two who adopt the same do not wait for each other.
+            for result in sorted(results, key=lambda one: one.fingerprint):
                 put_result(session, result, now)
 
     def forget(self, fingerprints: Iterable[str]) -> None:

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from sqlalchemy import ColumnElement, CursorResult, Update, select, update
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
@@ -116,16 +117,23 @@ def give_back(task: Task, inspection: Inspection, now: datetime, *, counts: bool
 
 
 def put_result(session: Session, result: Result, now: datetime) -> ResultRow:
-    """Remember a finished result by its fingerprint."""
-    row = ResultRow(
-        fingerprint=result.fingerprint,
-        stage=result.stage,
-        digest=result.digest,
-        facts=dict(result.facts),
-        rows=dict(result.rows),
-        path=result.path,
-        seconds=result.seconds,
-        peak_rss_bytes=result.peak_rss_bytes,
-        created_at=now,
-    )
-    return session.merge(row)
+    """Remember a finished result by its fingerprint.
+
+    Two inspections may finish the same one at the same moment; they lock their own plans, not each other's. So the
+    database decides: the later one waits for the earlier and writes over it.
+    """
+    values = {
+        "stage": result.stage,
+        "digest": result.digest,
+        "facts": dict(result.facts),
+        "rows": dict(result.rows),
+        "path": result.path,
+        "seconds": result.seconds,
+        "peak_rss_bytes": result.peak_rss_bytes,
+        "created_at": now,
+    }
+    insert = sqlite.insert if session.get_bind().dialect.name == "sqlite" else postgresql.insert
+    statement = insert(ResultRow).values(fingerprint=result.fingerprint, **values)
+    statement = statement.on_conflict_do_update(index_elements=[ResultRow.fingerprint], set_=values)
+    session.execute(statement)
+    return session.get_one(ResultRow, result.fingerprint, populate_existing=True)

@@ -66,7 +66,7 @@ class SoakSettings:
 
     def parameters(self, job: int) -> dict[str, Any]:
         """Of one job; no two share a result, so every job is computed."""
-        own = {"features.max_keypoints": 2000 + 10 * job, "compute.threads": 1, "seed": 0}
+        own = {"frames.jpeg_quality": 100 - job % 40, "compute.threads": 1, "seed": 0}
         options = {**self.options, **own}
         return {"preset": self.preset, "options": options, "label": "soak"}
 

@@ -26,7 +26,7 @@ def _expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
 
 
 def _spec(name: str, **more: Any) -> StageSpec:
-    return StageSpec(name, 1, f"bench.soak.toy:{name}", ("features.max_keypoints",), **more)
+    return StageSpec(name, 1, f"bench.soak.toy:{name}", ("frames.jpeg_quality",), **more)
 
 
 GRAPH = Graph(
@@ -71,6 +71,6 @@ def _write(task: StageTask, data: bytes, facts: Facts | None = None) -> StageRes
         task.report(_SECONDS - left, _SECONDS)
     folder = task.out / "model"
     folder.mkdir()
-    seed = f"{task.key} {task.settings.features.max_keypoints} ".encode() + data
+    seed = f"{task.key} {task.settings.frames.jpeg_quality} ".encode() + data
     (folder / "points3D.bin").write_bytes(hashlib.sha256(seed).digest() * 2000)
     return StageResult(facts or {})

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import timedelta
 
@@ -12,9 +15,11 @@ from core.errors import BadInput, ResourceError, StageFailed
 from core.settings import make_settings
 from store.db import Database
 from store.inspections import Inspections
+from store.leasing import put_result
 from store.models import Attempt, CaseRow, DetectionRow, MetricRow, Result, Task
 from store.plan import Plan
 from store.records import Lease
+from store.records import Result as FinishedResult
 from tests.store.small_plan import FILES, GRAPH, result_for
 
 ID = "one"
@@ -352,3 +357,26 @@ def test_results_that_vanished_are_made_anew_and_the_plan_goes_on(plan: Plan) ->
 def test_an_unknown_inspection_is_said(plan: Plan) -> None:
     with pytest.raises(BadInput):
         inspections(plan).get("nobody")
+
+
+def test_two_inspections_finish_the_same_result_at_the_same_moment(db: Database) -> None:
+    """The second one is at its insert while the first has not committed."""
+    result = FinishedResult("f" * 64, "split", "d" * 64, {}, "split/f", 1.0, 1)
+    inserting = threading.Event()
+
+    def second() -> None:
+        inserting.set()
+        with db.write() as session:
+            put_result(session, replace(result, seconds=2.0), db.now(session))
+
+    with ThreadPoolExecutor(1) as pool:
+        with db.write() as session:
+            put_result(session, result, db.now(session))
+            session.flush()
+            waiting = pool.submit(second)
+            inserting.wait(10.0)
+            time.sleep(0.3)
+            assert not waiting.done()
+        waiting.result(10.0)
+    with db.read() as session:
+        assert session.get_one(Result, result.fingerprint).seconds == 2.0

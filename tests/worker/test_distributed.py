@@ -168,3 +168,16 @@ def test_another_broker_does_as_well(place: Deployment) -> None:
     workers(place)
     place.wait("one")
     assert place.accepted_once("one")
+
+
+def test_a_task_longer_than_the_visibility_timeout_runs_once(place: Deployment, broker: Redis) -> None:
+    place.environment["BLADEATLAS_VISIBILITY_TIMEOUT_S"] = "1"
+    place.create("one", split={"sleep_s": 16})
+    workers(place, 2)
+    wait_for(lambda: broker.zcard("unacked_index") == 1)
+    # The broker takes the message for lost and hands it to the other worker, for whom the plan has nothing.
+    wait_for(lambda: broker.zcard("unacked_index") == 0)
+    assert place.inspections.get("one").state == "running"
+    place.wait("one")
+    assert place.accepted_once("one")
+    assert set(place.started("one").values()) == {1}

@@ -53,7 +53,7 @@ STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
         _spec("probe", "input", reads_video=True, weight=0.2),
-        _spec("annotations", reads_annotations=True, weight=0.1),
+        _spec("annotations", version=2, reads_annotations=True, weight=0.1),
         _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=0.3),
         _spec("features", "features", fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec("focal", "camera", "matching.ratio", "verification", *_FOCAL_MAPPER, "seed", fan_out=True, weight=7),
@@ -80,8 +80,8 @@ STAGES: dict[str, StageSpec] = {
         _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=21),
         _spec("fuse", "fusion", "dense", weight=3),
         _spec("mesh", "mesh", weight=2),
-        _spec("map_defects", "mapping", weight=0.4),
-        _spec("timeline", "timeline", weight=0.3),
+        _spec("map_defects", "mapping", version=2, weight=0.6),
+        _spec("timeline", "mapping", "timeline", version=2, weight=0.5),
         _spec("gallery", "gallery", reads_video=True, weight=1),
     )
 }
@@ -132,10 +132,9 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     """Features, camera, matches and the verified view graph."""
     step = settings.compute.chunk_frames
     chunks = [(start, min(start + step, n_frames)) for start in range(0, n_frames, step)]
-    features = [
-        TaskSpec(f"features/{i:03d}", ("frames", "annotations"), {"start": a, "end": b})
-        for i, (a, b) in enumerate(chunks)
-    ]
+    # Other annotations of the same video need no new features, unless these keep to the annotated blades.
+    needs = ("frames", "annotations") if settings.features.blade_masks_only else ("frames",)
+    features = [TaskSpec(f"features/{i:03d}", needs, {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
     feature_keys = tuple(task.key for task in features)
     tasks = list(features)
     focal_keys: tuple[str, ...] = ()
@@ -180,8 +179,9 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     tasks += [*depth, *geometric]
     tasks.append(TaskSpec("fuse", ("undistort", *(task.key for task in geometric))))
     tasks.append(TaskSpec("mesh", ("fuse",)))
-    tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", "extend", "fuse", "mesh")))
-    tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "mesh", "map_defects")))
+    dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
+    tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", "graph", "extend", *dense_keys)))
+    tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "map_defects")))
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", "timeline")))
     return tasks
 

@@ -33,6 +33,7 @@ OUTPUTS: tuple[Output, ...] = (
     Output("mapping/mesh_defects.ply", (("timeline", "mesh_defects.ply"),), needs_trust=True),
     Output("mapping/mesh_defects.glb", (("timeline", "mesh_defects.glb"),), needs_trust=True),
     Output("mapping/defect_points.ply", (("map_defects", "defect_points.ply"),), needs_trust=True),
+    Output("mapping/confidence.json", (("timeline", "confidence.json"),), needs_trust=True),
     Output("gallery", (("gallery", ""),), folder=True),
 )
 

@@ -40,6 +40,8 @@ class PlacedAnnotations:
     detections: tuple[PlacedDetection, ...]
     masks: dict[int, tuple[Mask, ...]]
     keys_outside: tuple[str, ...]
+    looked_at: tuple[int, ...]
+    """Source frames that have a key, with detections or without: the detector saw them."""
     flags: tuple[Flag, ...]
 
 
@@ -89,16 +91,18 @@ def place(annotations: Annotations, table: FrameTable) -> PlacedAnnotations:
         ),
         masks=masks,
         keys_outside=outside,
+        looked_at=tuple(sorted({frame for frame in frames.values() if frame is not None})),
         flags=flags,
     )
 
 
 def write_placed(placed: PlacedAnnotations, folder: Path) -> None:
-    """Write `detections.json` and `masks.json`."""
+    """Write `detections.json`, `masks.json` and `looked_at.json`."""
     rows = [dict(detection.__dict__) for detection in placed.detections]
     masks = {str(i): [dict(mask.__dict__) for mask in placed.masks[i]] for i in sorted(placed.masks)}
     _write_json(folder / "detections.json", rows)
     _write_json(folder / "masks.json", masks)
+    _write_json(folder / "looked_at.json", list(placed.looked_at))
 
 
 def load_detections(folder: Path) -> list[PlacedDetection]:

@@ -37,6 +37,9 @@ class Detection:
     """x1, y1, x2, y2, normalised on the source frame."""
     source_index: int | None
     """Decoded frame of the video that shows it; None = the time is outside the video."""
+    polygon: tuple[tuple[float, float], ...] | None = None
+    """Its mask, corners normalised on the source frame."""
+    track_id: str | None = None
 
     @classmethod
     def from_json(cls, row: Mapping[str, Any]) -> Detection:
@@ -44,6 +47,7 @@ class Detection:
         x1, y1, x2, y2 = (float(value) for value in row["box"])
         score = row.get("score")
         source_index = row.get("source_index")
+        polygon, track = row.get("polygon"), row.get("track_id")
         return cls(
             id=int(row["id"]),
             key=str(row["key"]),
@@ -52,6 +56,8 @@ class Detection:
             score=None if score is None else float(score),
             box=(x1, y1, x2, y2),
             source_index=None if source_index is None else int(source_index),
+            polygon=None if polygon is None else tuple((float(x), float(y)) for x, y in polygon),
+            track_id=None if track is None else str(track),
         )
 
 
@@ -106,9 +112,14 @@ def _row(detection: Detection, **found: Any) -> DetectionRow:
 
 
 def mapped_row(
-    detection: Detection, frame_index: int, centroid: Sequence[float], support_points: int, rung: str = "sparse"
+    detection: Detection,
+    frame_index: int,
+    centroid: Sequence[float],
+    support_points: int,
+    rung: str = "sparse",
+    model: int = 0,
 ) -> DetectionRow:
-    """Row of a placed detection; `centroid` is its place in the world frame of model 0."""
+    """Row of a placed detection; `centroid` is its place in the world frame of `model`."""
     x, y, z = (float(value) for value in centroid)
     return _row(
         detection,
@@ -117,7 +128,25 @@ def mapped_row(
         rung=rung,
         support_points=support_points,
         **{"x": x, "y": y, "z": z},
-        model=0,
+        model=model,
+    )
+
+
+def approximate_row(
+    detection: Detection, frame_index: int | None, place: Sequence[float], rung: str, reason: str, model: int = 0
+) -> DetectionRow:
+    """Row of a detection whose place is an estimate; `reason` is a key of `REASONS` and says why it is not mapped."""
+    if reason not in REASONS:
+        raise ValueError(f"unknown reason {reason!r}")
+    x, y, z = (float(value) for value in place)
+    return _row(
+        detection,
+        frame_index=frame_index,
+        outcome="approximate",
+        reason=reason,
+        rung=rung,
+        **{"x": x, "y": y, "z": z},
+        model=model,
     )
 
 

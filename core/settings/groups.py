@@ -242,7 +242,11 @@ class MeshSettings(Group):
 class MappingSettings(Group):
     """Detections onto the surface."""
 
-    method: Literal["thesis"] = option("thesis", "rule that places a detection", source="thesis")
+    method: Literal["surface", "thesis"] = option(
+        "surface",
+        "cast onto the supported surface and ask other views, or the thesis's sparse support",
+        source="method",
+    )
     box_frame: Literal["source", "crop"] = option(
         "source", "frame in which boxes are normalised (crop repeats the thesis's reading)", source="method"
     )
@@ -250,7 +254,11 @@ class MappingSettings(Group):
         "pts", "time of a frame: presentation time, or index / average rate", source="method"
     )
     time_tolerance_s: float = option(
-        0.4, "nearest registered image in time, nearer than", unit="s", source="thesis", gt=0
+        0.4,
+        "nearest registered image in time, nearer than; between two such, a pose is interpolated",
+        unit="s",
+        source="thesis",
+        gt=0,
     )
     radius_fraction: float = option(0.01, "colouring radius / mesh diagonal (eq. 3.1)", source="thesis", gt=0, le=1)
     sigma_fraction: float = option(0.35, "sigma / colouring radius (eq. 3.2)", source="thesis", gt=0)

@@ -71,6 +71,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "mesh.poisson_depth": 13,
         "mesh.poisson_trim": 10.0,
         "mesh.keep_unsupported": True,
+        "mapping.method": "thesis",
         "mapping.box_frame": "crop",
         "mapping.time_rule": "average_rate",
     },

@@ -10,9 +10,9 @@ from core.video.table import FrameTable
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `detections.json` and `masks.json`; `BadInput` when the file cannot be used.
+    """Write `detections.json`, `masks.json` and `looked_at.json`; `BadInput` when the file cannot be used.
 
-    Without an annotation file both are empty.
+    Without an annotation file all are empty.
     """
     annotations = load_annotations(task.annotations)
     task.report(1, 2, f"{len(annotations.entries)} time keys")

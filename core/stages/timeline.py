@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
 from core.report.tables import read_json, write_json
 from core.stage import StageResult, StageTask
-from core.stages.map_defects import WORLD_COMMENTS
+from core.stages.map_defects import WORLD_COMMENTS, open_scene_of
 from core.surface.glb import vertex_normals, write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.timeline.clusters import Cluster, cluster_detections, cluster_radius
@@ -22,13 +23,52 @@ from core.timeline.visibility import Occlusion, Sighting, View, sightings, views
 
 
 def run(task: StageTask) -> StageResult:
-    """Cluster the mapped detections (equation 3.3) and write tables and coloured surfaces.
+    """Tell defects apart by the rules that `mapping.method` names; write tables and coloured surfaces.
 
-    Writes the files that docs/stage-results.md names. Facts: n_events, n_defects, cluster_radius_su.
+    Writes the files that docs/stage-results.md names. Facts: n_events, n_defects, and what the rules count.
     """
+    by_surface = task.settings.mapping.method == "surface"
+    mesh = read_mesh(task.input("mesh") / "mesh_poisson.ply")
+    colored, facts = _by_surface(task, mesh) if by_surface else _by_clusters(task, mesh)
+    task.report(3, 4, "writing the coloured surface")
+    write_mesh(task.out / "mesh_defects.ply", colored, WORLD_COMMENTS)
+    write_glb(task.out / "mesh_defects.glb", colored)
+    _write_cameras(task, views_of_model(open_model(task.input("extend") / "model")))
+    task.report(4, 4, "timeline written")
+    return StageResult(facts)
+
+
+def _by_surface(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
+    """Instances, visits and confidences."""
+    # Loaded here: the thesis's rules need no ray caster beyond the one for sight lines.
+    from core.mapping.store import parts_rows, read_observations
+    from core.timeline import defects
+    from core.timeline.paint import paint_defects
+
+    observations = read_observations(task.input("map_defects"))
+    scene, times = open_scene_of(task)
+    task.report(1, 4, "telling defects apart")
+    found = defects.find_defects(observations, scene, times.time_of_index)
+    events = defects.event_rows(found, times.time_of_index)
+    task.report(2, 4, "colouring the surface")
+    weight, vertex_defect = paint_defects(mesh, found, task.settings.mapping, task.threads)
+    faces = [own.tolist() for own in faces_of_defects(mesh.faces, vertex_defect, len(found.defects))]
+    write_json(task.out / "timeline.json", [event.to_dict() for event in events])
+    write_json(task.out / "detections.json", [row.to_dict() for row in defects.final_rows(found)])
+    write_json(task.out / "defects.json", defects.defect_records(found, events, faces, scene.model))
+    write_json(task.out / "confidence.json", parts_rows(found.observations))
+    colored = replace(mesh, colors=blend(mesh.colors, weight), extra={**mesh.extra, "defect_id": vertex_defect})
+    return colored, {
+        "n_events": len(events),
+        "n_defects": len(found.defects),
+        "n_unconfirmed": found.unconfirmed,
+    }
+
+
+def _by_clusters(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
+    """Equation 3.3: one cluster is one event and one defect."""
     mapping = task.input("map_defects")
     rows = [DetectionRow(**row) for row in read_json(mapping / "detections.json")]
-    mesh = read_mesh(task.input("mesh") / "mesh_poisson.ply")
     task.report(1, 4, "grouping detections")
     radius = cluster_radius(mesh.diagonal, task.settings.timeline.radius_fraction)
     clusters = cluster_detections(rows, radius)
@@ -38,15 +78,11 @@ def run(task: StageTask) -> StageResult:
     events = event_rows(clusters)
     write_json(task.out / "timeline.json", [event.to_dict() for event in events])
     write_json(task.out / "detections.json", [row.to_dict() for row in with_defect_ids(rows, clusters)])
+    write_json(task.out / "confidence.json", [])
     task.report(2, 4, "finding the views of every defect")
     _write_defects(task, clusters, mesh, vertex_defect, weight)
-    task.report(3, 4, "writing the coloured surface")
-    extra = {**mesh.extra, "defect_id": vertex_defect}
-    colored = replace(mesh, colors=blend(mesh.colors, weight), extra=extra)
-    write_mesh(task.out / "mesh_defects.ply", colored, WORLD_COMMENTS)
-    write_glb(task.out / "mesh_defects.glb", colored)
-    task.report(4, 4, "timeline written")
-    return StageResult({"n_events": len(events), "n_defects": len(clusters), "cluster_radius_su": radius})
+    colored = replace(mesh, colors=blend(mesh.colors, weight), extra={**mesh.extra, "defect_id": vertex_defect})
+    return colored, {"n_events": len(events), "n_defects": len(clusters), "cluster_radius_su": radius}
 
 
 def _write_defects(
@@ -56,7 +92,6 @@ def _write_defects(
         owner, position = support["detection"], support["position"]
     supports: dict[int, F64] = {int(i): position[owner == i] for i in np.unique(owner)}
     views = views_of_model(open_model(task.input("extend") / "model"))
-    _write_cameras(task, views)
     normals = vertex_normals(mesh)
     occlusion = Occlusion(mesh.vertices, mesh.faces)
     tolerance = task.settings.timeline.occlusion_fraction * mesh.diagonal

@@ -27,6 +27,7 @@ REGISTERED = [0, 1, 2, 3, 4, 5]
 SETTINGS = make_settings(
     "default",
     {
+        "mapping.method": "thesis",
         "timeline.radius_fraction": 0.04,  # 0.31 units, so that the place seen two frames late joins its defect
         "gallery.render_width_px": 160,
         "gallery.render_height_px": 120,

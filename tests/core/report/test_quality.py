@@ -22,12 +22,14 @@ def test_funnel() -> None:
         "detections": 6,
         "frame_found": 5,
         "registered": 4,
-        "surface_hit": None,
-        "verified": None,
+        "surface_hit": 3,
+        "verified": 3,
         "mapped": 3,
         "approximate": 0,
         "defects": 2,
     }
+    by_support = build_report(full_record("thesis")).quality["funnel"]
+    assert by_support["surface_hit"] is by_support["verified"] is None
     assert [(row["reason"], row["detections"]) for row in QUALITY["lost"]] == [
         ("no_frame", 1),
         ("no_registered_view", 1),

@@ -1,0 +1,63 @@
+"""Where a detection may lie on the surface: one candidate per patch under it, and the choice among them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.consensus import Testimony
+from core.mapping.patches import Patch
+
+F64 = NDArray[np.float64]
+
+MIN_SHARE = 0.1
+"""A patch under a smaller share of a detection's pixels is the rim of something else."""
+NEAREST_BONUS = 0.25
+"""A nick is missing metal: what it belongs to is nearer than what is seen through it."""
+SHARE_WEIGHT = 0.2
+DEPTH_WEIGHT = 0.8
+"""A patch that depth maps see through is a sheet that fusion or Poisson left before the blades."""
+PRIOR_VIEWS = 3.0
+"""The share of supporting views is trusted only as far as there are more of them than this."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A patch that a detection may show."""
+
+    detection: int
+    """Row of the detection."""
+    patch: Patch
+    place: F64
+    """(3,) point of the mesh nearest to the area centroid of the patch."""
+    normal: F64
+    """(3,) unit, towards the camera that saw it."""
+    nearest: bool
+    """No other candidate of the detection is nearer to the camera."""
+    depth: float | None
+    """Share of the depth maps' looks that met it, see `core.mapping.depth_witness`."""
+
+
+def merit(candidate: Candidate, visible: int, support: int) -> float:
+    """How likely this is the one that was meant; only the order among the candidates of a detection matters."""
+    share = support / (visible + PRIOR_VIEWS)
+    depth = 0.5 if candidate.depth is None else candidate.depth
+    return share + NEAREST_BONUS * candidate.nearest + SHARE_WEIGHT * candidate.patch.share + DEPTH_WEIGHT * depth
+
+
+def choose(candidates: Sequence[Candidate], said: Testimony) -> dict[int, tuple[int, float]]:
+    """The best candidate of each detection: its row and by how much it leads (infinite without another)."""
+    visible, support = said.n_visible, said.n_support
+    by_detection: dict[int, list[tuple[float, int]]] = {}
+    for row, candidate in enumerate(candidates):
+        value = merit(candidate, int(visible[row]), int(support[row]))
+        by_detection.setdefault(candidate.detection, []).append((-value, row))
+    chosen = {}
+    for detection, found in by_detection.items():
+        found.sort()
+        lead = found[1][0] - found[0][0] if len(found) > 1 else float("inf")
+        chosen[detection] = (found[0][1], lead)
+    return chosen

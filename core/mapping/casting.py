@@ -1,0 +1,177 @@
+"""Detections of registered frames cast onto the supported surface, and checked by the other views."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.candidates import MIN_SHARE, Candidate, choose
+from core.mapping.confidence import Parts
+from core.mapping.consensus import Testimony, testimony
+from core.mapping.depth_witness import seen_share
+from core.mapping.patches import Patch, split_patches
+from core.mapping.pixels import Footprint
+from core.mapping.scene import Scene, places_nearest
+from core.mapping.sigma import place_sigma
+from core.mapping.support import Box
+from core.mapping.support_check import Agreement, depth_agreement
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+MIN_VISIBLE = 5
+"""Fewer views that could see a place do not contradict it."""
+MAX_CHANCE = 0.01
+"""A place is contradicted when so many misses in a row, of this detector at other places, have less chance."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """A detection as a view sees it. The view need not be registered: its pose may be an estimate."""
+
+    detection: int
+    """Row of the caller's list."""
+    label: str
+    score: float | None
+    box_px: Box
+    samples: Footprint
+    origin: F64
+    """(3,) projection centre."""
+    R: F64
+    """(3, 3) cam_from_world."""
+    view: int | None
+    """Row of the registered view with this pose; None = an estimate."""
+    frame: int
+    """Index of the frame, or of the registered one nearest in time: depth maps near it are asked."""
+
+
+@dataclass(frozen=True)
+class Cast:
+    """Where a sight ended up on the surface."""
+
+    place: F64
+    """(3,) point of the mesh."""
+    normal: F64
+    patch: Patch
+    parts: Parts
+    sigma: float
+    contradicted: bool
+    point_ids: I64
+    """Sparse points in the box that lie on the patch."""
+    points: F64
+    """(n, 3) of them."""
+
+
+@dataclass(frozen=True)
+class Missed:
+    """Why a sight has no place on the surface."""
+
+    reason: str
+    """``off_surface``, or ``occluded`` when only the back of the surface lies there."""
+
+
+def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
+    """Place every sight, in order."""
+    candidates: list[Candidate] = []
+    outcome: list[Cast | Missed] = [Missed("off_surface") for _ in sights]
+    for row, sight in enumerate(sights):
+        found, blocked = _patches(scene, sight)
+        if not found and blocked:
+            outcome[row] = Missed("occluded")
+        for patch in found:
+            normal, depth = _normal(scene, patch), seen_share(scene.depth, sight.frame, patch.points, scene.spacing)
+            candidates.append(Candidate(row, patch, patch.centroid, normal, patch is found[0], depth))
+    places = places_nearest(scene.surface, [candidate.place for candidate in candidates])
+    candidates = [replace(candidate, place=place) for candidate, place in zip(candidates, places, strict=True)]
+    said = _ask(scene, sights, candidates)
+    chosen = choose(candidates, said)
+    recall = _recall(said, [row for row, _ in chosen.values()])
+    for detection, (row, lead) in chosen.items():
+        outcome[detection] = _cast(scene, sights[detection], candidates[row], said, row, lead, recall)
+    return outcome
+
+
+def _patches(scene: Scene, sight: Sight) -> tuple[list[Patch], bool]:
+    """Patches large enough, nearest first, and whether the pixels meet only the back of the surface."""
+    rays = scene.views.rays(sight.samples.xy, sight.R)
+    hits = scene.surface.cast(np.broadcast_to(sight.origin, rays.shape), rays)
+    found = split_patches(sight.samples, sight.origin, rays, hits, scene.spacing)
+    return [patch for patch in found if patch.share >= MIN_SHARE], bool((hits.hit & (hits.cosine <= 0)).any())
+
+
+def _normal(scene: Scene, patch: Patch) -> F64:
+    total = patch.weights @ scene.face_normals[patch.faces]
+    length = float(np.linalg.norm(total))
+    normal: F64 = total / length if length > 0 else total
+    return normal
+
+
+def _ask(scene: Scene, sights: Sequence[Sight], candidates: Sequence[Candidate]) -> Testimony:
+    own = [sights[c.detection].view for c in candidates]
+    return testimony(
+        np.array([c.place for c in candidates]).reshape(-1, 3),
+        np.array([c.normal for c in candidates]).reshape(-1, 3),
+        [sights[c.detection].label for c in candidates],
+        [-1 if view is None else view for view in own],
+        scene.views,
+        scene.frames,
+        scene.surface,
+        scene.tolerance,
+    )
+
+
+def _recall(said: Testimony, rows: Sequence[int]) -> float:
+    """How often this detector finds what it could see: over the places that anything at all supports."""
+    visible, support = said.n_visible[list(rows)], said.n_support[list(rows)]
+    known = support > 0
+    return float(support[known].sum() / visible[known].sum()) if known.any() else 0.0
+
+
+def _cast(
+    scene: Scene, sight: Sight, candidate: Candidate, said: Testimony, row: int, lead: float, recall: float
+) -> Cast:
+    visible, support = int(said.n_visible[row]), int(said.n_support[row])
+    sparse, ids, points = _sparse(scene, sight, candidate.patch)
+    cloud, _ = scene.cloud.query(candidate.place)
+    x1, y1, x2, y2 = sight.box_px
+    in_cam = sight.R @ (candidate.place - sight.origin)
+    parts = Parts(
+        visible=visible,
+        support=support,
+        same_label=int(said.same_label[row].sum()),
+        share=candidate.patch.share,
+        cosine=candidate.patch.cosine,
+        lead=lead,
+        sparse=sparse.share,
+        depth=candidate.depth,
+        cloud_spacings=float(cloud) / scene.spacing if scene.spacing > 0 else 0.0,
+        score=sight.score,
+    )
+    pose = None if sight.view is None else scene.pose_covariance(sight.view)
+    side = (x2 - x1 + y2 - y1) / 2
+    return Cast(
+        place=candidate.place,
+        normal=candidate.normal,
+        patch=candidate.patch,
+        parts=parts,
+        sigma=place_sigma(in_cam, pose, side, sight.samples.outline, scene.focal_px, scene.spacing),
+        contradicted=support == 0 and visible >= MIN_VISIBLE and (1.0 - recall) ** visible < MAX_CHANCE,
+        point_ids=ids,
+        points=points,
+    )
+
+
+def _sparse(scene: Scene, sight: Sight, patch: Patch) -> tuple[Agreement, I64, F64]:
+    """Do the sparse points of the box agree, and which of them lie on the patch?"""
+    if sight.view is None:
+        return Agreement(None, 0), np.zeros(0, np.int64), np.zeros((0, 3))
+    xy, ids, points = scene.sparse.of(int(scene.views.frame_index[sight.view]))
+    x1, y1, x2, y2 = sight.box_px
+    inside = (xy[:, 0] >= x1) & (xy[:, 0] <= x2) & (xy[:, 1] >= y1) & (xy[:, 1] <= y2)
+    distance = np.linalg.norm(points[inside] - sight.origin, axis=1)
+    agreement = depth_agreement(distance, patch.distance, scene.spacing)
+    near = np.abs(distance - patch.distance) <= max(2.0 * patch.radius, scene.tolerance)
+    return agreement, ids[inside][near], points[inside][near]

@@ -1,0 +1,92 @@
+"""Observations on disk, between placing detections and telling defects apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.confidence import Parts
+from core.mapping.rows import DetectionRow
+from core.mapping.surface_rules import Observation
+from core.report.tables import read_json, write_json
+
+F64 = NDArray[np.float64]
+
+MAX_POINTS = 64
+"""Surface points kept of an observation: enough for its extent and its colour."""
+
+
+def write_observations(folder: Path, observations: Sequence[Observation]) -> None:
+    """Write `detections.json` (the rows), `parts.json` and `observations.npz`."""
+    write_json(folder / "detections.json", [one.row.to_dict() for one in observations])
+    rows = []
+    for one in observations:
+        parts = None if one.parts is None else {**asdict(one.parts), "lead": _finite(one.parts.lead)}
+        rows.append({"id": one.row.id, "sigma": one.sigma, "track_id": one.track_id, "parts": parts})
+    write_json(folder / "parts.json", rows)
+    kept = [_thinned(one.points) for one in observations]
+    np.savez(
+        folder / "observations.npz",
+        offsets=np.cumsum([0, *(len(points) for points in kept)]).astype(np.int64),
+        points=np.concatenate([np.zeros((0, 3)), *kept]),
+        normal=np.array([one.normal for one in observations], np.float64).reshape(-1, 3),
+        radius=np.array([one.radius for one in observations], np.float64),
+    )
+
+
+def read_observations(folder: Path) -> list[Observation]:
+    """What `write_observations` wrote, in input order; without the sparse points."""
+    rows = [DetectionRow(**row) for row in read_json(folder / "detections.json")]
+    more = read_json(folder / "parts.json")
+    with np.load(folder / "observations.npz") as data:
+        offsets, points, normal, radius = (data[name] for name in ("offsets", "points", "normal", "radius"))
+    found = []
+    for k, (row, extra) in enumerate(zip(rows, more, strict=True)):
+        parts = extra["parts"]
+        if parts is not None:
+            parts = Parts(**{**parts, "lead": float("inf") if parts["lead"] is None else parts["lead"]})
+        found.append(
+            Observation(
+                row,
+                points[offsets[k] : offsets[k + 1]],
+                normal[k],
+                float(radius[k]),
+                extra["sigma"],
+                parts,
+                np.zeros(0, np.int64),
+                np.zeros((0, 3)),
+                extra["track_id"],
+            )
+        )
+    return found
+
+
+def _finite(value: float) -> float | None:
+    return None if value == float("inf") else value
+
+
+def _thinned(points: F64) -> F64:
+    if len(points) <= MAX_POINTS:
+        return points
+    thinned: F64 = points[np.linspace(0, len(points) - 1, MAX_POINTS).round().astype(int)]
+    return thinned
+
+
+def parts_rows(observations: Sequence[Observation]) -> list[dict[str, Any]]:
+    """Records of ``mapping/confidence.json``: what each placed detection's confidence is made of."""
+    return [
+        {
+            "id": one.row.id,
+            "confidence": one.row.confidence,
+            "position_sigma": one.sigma,
+            "radius": one.radius,
+            "parts": None if one.parts is None else one.parts.to_dict(),
+        }
+        for one in observations
+        if one.row.outcome != "unplaced"
+    ]

@@ -1,0 +1,251 @@
+"""Defects, events and confidences out of observations on the surface."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.confidence import confidence
+from core.mapping.rows import DetectionRow
+from core.mapping.scene import Scene
+from core.mapping.surface_rules import Observation
+from core.timeline.events import EventRow, leading_label
+from core.timeline.instances import existence, fused_place, group_observations
+from core.timeline.seen import views_of_place, visits
+from core.timeline.visibility import Sighting
+
+F64 = NDArray[np.float64]
+
+MIN_EXISTENCE = 0.5
+"""A place whose detections are more likely inventions than not makes no record."""
+
+
+@dataclass(frozen=True)
+class Defect:
+    """One physical defect."""
+
+    members: tuple[int, ...]
+    """Rows of its observations, by time."""
+    place: F64
+    sigma: float
+    normal: F64
+    sightings: tuple[Sighting, ...]
+    """Registered views that could see it, best first."""
+    k: int
+    """Frames with a detection of it."""
+    n: int
+    """Frames that could show it: those of the sightings that the detector saw, and the k."""
+    exists: float
+    visits: tuple[tuple[int, ...], ...]
+    """Frame indices with a detection, by visit."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Everything of one model."""
+
+    observations: tuple[Observation, ...]
+    """As given, with confidence and defect id."""
+    defects: tuple[Defect, ...]
+    """By the time of their first detection; the position is the id."""
+    unconfirmed: int
+    """Groups of mapped detections that other frames speak against too much for a record."""
+
+
+def find_defects(observations: Sequence[Observation], scene: Scene, times_s: Mapping[int, float]) -> Found:
+    """Group the observations of a model into defects.
+
+    Args:
+        observations: in input order, all of them.
+        scene: of the model.
+        times_s: of its registered frames, by frame index.
+    """
+    looked = set(scene.views.frame_index[scene.frames.rows].tolist())
+    groups = group_observations(observations)
+    candidates = [_defect(members, observations, scene, times_s, looked) for members in groups]
+    recall = _recall(candidates)
+    candidates = [replace(defect, exists=existence(defect.k, defect.n, recall)) for defect in candidates]
+    updated = list(observations)
+    for defect in candidates:
+        for member in defect.members:
+            updated[member] = _judged(updated[member], defect)
+    defects = tuple(defect for defect in candidates if defect.exists >= MIN_EXISTENCE)
+    for number, defect in enumerate(defects):
+        for member in defect.members:
+            updated[member] = replace(updated[member], row=replace(updated[member].row, defect_id=number))
+    return Found(_with_estimates(updated, defects), defects, len(candidates) - len(defects))
+
+
+def _defect(
+    members: Sequence[int],
+    observations: Sequence[Observation],
+    scene: Scene,
+    times_s: Mapping[int, float],
+    looked: set[int],
+) -> Defect:
+    own = [observations[k] for k in members]
+    place, sigma = fused_place(own)
+    nearest, _ = scene.surface.nearest(place[None])
+    normal = sum((one.normal for one in own), np.zeros(3))
+    normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
+    points = _core(own, place)
+    seen = views_of_place(points, normal, scene.views, scene.surface, scene.tolerance)
+    detected = sorted({one.row.frame_index for one in own if one.row.frame_index is not None}, key=lambda i: times_s[i])
+    n = len(set(detected) | {sighting.frame_index for sighting in seen if sighting.frame_index in looked})
+    return Defect(
+        tuple(members),
+        nearest[0],
+        sigma,
+        normal,
+        tuple(seen),
+        len(detected),
+        n,
+        0.0,
+        tuple(tuple(visit) for visit in visits(detected, [s.frame_index for s in seen], times_s)),
+    )
+
+
+def _core(own: Sequence[Observation], place: F64) -> F64:
+    """Surface points of the observations near the fused place: the nearer half of them."""
+    points = np.concatenate([one.points for one in own])
+    distance = np.linalg.norm(points - place, axis=1)
+    nearer: F64 = points[distance <= np.median(distance)]
+    return nearer
+
+
+def _recall(defects: Sequence[Defect]) -> float:
+    """How often the detector finds what it could see: over all frames that could show a defect seen at least twice."""
+    known = [defect for defect in defects if defect.k >= 2]
+    total = sum(defect.n for defect in known)
+    return sum(defect.k for defect in known) / total if total else 0.5
+
+
+def _judged(one: Observation, defect: Defect) -> Observation:
+    """With its confidence, now that its peers are known."""
+    if one.parts is None:
+        return one
+    place = np.array((one.row.x, one.row.y, one.row.z))
+    offset = float(np.linalg.norm(place - defect.place)) / max(one.radius, 1e-12)
+    parts = replace(one.parts, peers=len(defect.members) - 1, offset=offset)
+    return replace(one, parts=parts, row=replace(one.row, confidence=round(confidence(parts), 4)))
+
+
+def _with_estimates(observations: Sequence[Observation], defects: Sequence[Defect]) -> tuple[Observation, ...]:
+    """Estimated places join the defect they fall on; they make none of their own."""
+    places = np.array([defect.place for defect in defects]).reshape(-1, 3)
+    found = []
+    for one in observations:
+        if one.row.outcome == "approximate" and len(places):
+            distance = np.linalg.norm(places - np.array((one.row.x, one.row.y, one.row.z)), axis=1)
+            nearest = int(distance.argmin())
+            reach = max(one.radius, max(_radius(defects[nearest], observations), one.sigma or 0.0))
+            if distance[nearest] <= reach:
+                one = replace(one, row=replace(one.row, defect_id=nearest))
+        found.append(one)
+    return tuple(found)
+
+
+def _radius(defect: Defect, observations: Sequence[Observation]) -> float:
+    return float(np.median([observations[k].radius for k in defect.members]))
+
+
+def event_rows(found: Found, times_s: Mapping[int, float]) -> list[EventRow]:
+    """One event per visit, by start; the ids are their positions."""
+    rows: list[tuple[float, int, EventRow]] = []
+    for number, defect in enumerate(found.defects):
+        for visit in defect.visits:
+            own = [found.observations[k] for k in defect.members if found.observations[k].row.frame_index in visit]
+            rows.append((own[0].row.time_s, number, _event(number, defect, own, len(visit))))
+    rows.sort(key=lambda item: item[:2])
+    return [replace(row, event_id=k) for k, (_, _, row) in enumerate(rows)]
+
+
+def _event(number: int, defect: Defect, own: Sequence[Observation], n_frames: int) -> EventRow:
+    places = np.array([(o.row.x, o.row.y, o.row.z) for o in own])
+    middle = places.mean(axis=0)
+    return EventRow(
+        event_id=-1,
+        defect_id=number,
+        label=leading_label([one.row for one in own]),
+        start_s=own[0].row.time_s,
+        end_s=own[-1].row.time_s,
+        n_detections=len(own),
+        n_frames=n_frames,
+        x=float(middle[0]),
+        y=float(middle[1]),
+        z=float(middle[2]),
+        radius=float(np.linalg.norm(places - middle, axis=1).max()),
+        confidence=_combined(own, defect),
+    )
+
+
+def _combined(own: Sequence[Observation], defect: Defect) -> float:
+    """Confidence of several observations of one place: the median of theirs, held down by what other frames say."""
+    stated = [one.row.confidence for one in own if one.row.confidence is not None]
+    return round(float(np.median(stated)) * defect.exists, 4) if stated else 0.0
+
+
+def defect_records(
+    found: Found, events: Sequence[EventRow], faces: Sequence[Sequence[int]], model: int
+) -> list[dict[str, Any]]:
+    """Records of ``mapping/defects.json``; `faces` are those of the coloured mesh by defect."""
+    records = []
+    for number, defect in enumerate(found.defects):
+        own = [found.observations[k] for k in defect.members]
+        rows = [one.row for one in own]
+        detected = {row.frame_index for row in rows}
+        records.append(
+            {
+                "id": number,
+                "label": leading_label(rows),
+                "labels": dict(sorted(Counter(row.label for row in rows).items())),
+                "model": model,
+                "centroid": [float(value) for value in defect.place],
+                "centroid_sigma": defect.sigma,
+                "normal": [round(float(value), 6) for value in defect.normal],
+                "extent": _extent(own),
+                "confidence": {"value": _combined(own, defect), "parts": _parts(own, defect)},
+                "persistence": {"k": defect.k, "n": defect.n, "share": defect.k / defect.n},
+                "events": [event.event_id for event in events if event.defect_id == number],
+                "detections": [row.id for row in rows],
+                "approximate_detections": _approximate(found.observations, number),
+                "frames": [sighting.to_dict(sighting.frame_index in detected) for sighting in defect.sightings],
+                "faces": [int(face) for face in faces[number]],
+                "blade": None,
+            }
+        )
+    return records
+
+
+def _approximate(observations: Sequence[Observation], number: int) -> list[int]:
+    return [o.row.id for o in observations if o.row.outcome == "approximate" and o.row.defect_id == number]
+
+
+def _extent(own: Sequence[Observation]) -> dict[str, Any]:
+    """Diameter: twice the median radius of the patches; sigma is 1.4826 MAD, null for fewer than three."""
+    sizes = np.array([2.0 * one.radius for one in own])
+    value = float(np.median(sizes))
+    sigma = 1.4826 * float(np.median(np.abs(sizes - value))) if len(sizes) >= 3 else None
+    return {"value": value, "unit": "model", "sigma": sigma}
+
+
+def _parts(own: Sequence[Observation], defect: Defect) -> dict[str, Any]:
+    """What the confidence of a defect is made of: medians over its observations, and its existence."""
+    dicts = [one.parts.to_dict() for one in own if one.parts is not None]
+    names = dicts[0].keys() if dicts else ()
+    medians = {name: _median([d[name] for d in dicts if d[name] is not None]) for name in names}
+    return {"exists": round(defect.exists, 4), "observations": len(own), **medians}
+
+
+def _median(values: Sequence[Any]) -> float | None:
+    return round(float(np.median(values)), 4) if values else None
+
+
+def final_rows(found: Found) -> list[DetectionRow]:
+    """Rows of the detections, in input order."""
+    return [one.row for one in found.observations]

@@ -1,0 +1,75 @@
+"""Views of a defect: which could see it, how well, and the visits that its detections make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.consensus import could_see
+from core.mapping.surface import Surface
+from core.mapping.views import Views
+from core.timeline.visibility import MIN_VISIBLE_SHARE, Sighting
+
+F64 = NDArray[np.float64]
+
+MAX_SAMPLES = 16
+AWAY_FRAMES = 3
+"""A defect that this many registered frames in a row do not show was out of sight;"""
+AWAY_S = 0.5
+"""for at least so long, what comes after is another visit."""
+
+
+def views_of_place(points: F64, normal: F64, views: Views, surface: Surface, tolerance: float) -> list[Sighting]:
+    """Views that could see most of a place, best first (earlier first among equals).
+
+    Args:
+        points: (n, 3) surface points of the place.
+        normal: (3,) unit normal towards the cameras that saw it.
+        views: registered images.
+        surface: what may hide it.
+        tolerance: depth by which the surface may lie before a point, scene units.
+    """
+    if len(points) > MAX_SAMPLES:
+        points = points[np.linspace(0, len(points) - 1, MAX_SAMPLES).round().astype(int)]
+    rows = np.arange(len(views.frame_index))
+    seen, _ = could_see(points, np.tile(normal, (len(points), 1)), views, rows, surface, tolerance)
+    middle = points.mean(axis=0)
+    towards = views.centers - middle
+    distance = np.linalg.norm(towards, axis=1)
+    quality = np.clip(towards @ normal / distance, 0.0, 1.0) / distance**2
+    chosen = np.flatnonzero(seen.mean(axis=0) >= MIN_VISIBLE_SHARE)
+    best = float(quality[chosen].max(initial=0.0)) or 1.0
+    found = [Sighting(int(views.frame_index[k]), float(quality[k]) / best) for k in chosen]
+    return sorted(found, key=lambda sighting: (-sighting.quality, sighting.frame_index))
+
+
+def visits(detected: Sequence[int], visible: Sequence[int], times_s: Mapping[int, float]) -> list[list[int]]:
+    """Frames with a detection of a defect, cut where it was out of sight in between.
+
+    Args:
+        detected: frame indices with a detection, by time.
+        visible: frame indices that could see it.
+        times_s: of all registered frames by frame index.
+    """
+    seen = set(visible) | set(detected)
+    order = sorted(times_s, key=lambda frame: (times_s[frame], frame))
+    position = {frame: k for k, frame in enumerate(order)}
+    groups: list[list[int]] = []
+    for frame in detected:
+        if groups and not _was_away(order[position[groups[-1][-1]] : position[frame] + 1], seen, times_s):
+            groups[-1].append(frame)
+        else:
+            groups.append([frame])
+    return groups
+
+
+def _was_away(between: Sequence[int], seen: set[int], times_s: Mapping[int, float]) -> bool:
+    """Whether a long enough run of these frames does not show the defect."""
+    run: list[int] = []
+    for frame in between:
+        run = [] if frame in seen else [*run, frame]
+        if len(run) >= AWAY_FRAMES and times_s[run[-1]] - times_s[run[0]] >= AWAY_S:
+            return True
+    return False

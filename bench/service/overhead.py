@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime, timedelta
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 import httpx
 from sqlalchemy import select
@@ -22,6 +23,16 @@ from store.models import Attempt
 
 SAMPLES = Path("samples")
 SEARCH = ("coarse/", "refine/")
+MANY_WINDOWS = {
+    "camera.fov_deg": 85.0,
+    "windows.mode": "search",
+    "windows.coarse_length": 40,
+    "windows.coarse_step": 5,
+    "windows.refine_length": 48,
+    "windows.refine_step": 5,
+    "dense.views": 8,
+}
+"""The sample is shorter than one window of the presets; these cut it into about twenty, and leave out what is not timed."""
 Interval = tuple[datetime, datetime]
 
 
@@ -29,7 +40,7 @@ def overhead(folder: Path, repeat: int, preset: str) -> Table:
     """The sample through the service, from the answer 202 until its files can be fetched."""
     walls, inside = [], []
     for number in range(repeat):
-        with _finished(folder / f"overhead-{number}", preset, workers=2) as (database, wall):
+        with _finished(folder / f"overhead-{number}", preset, {}, workers=2) as (database, wall):
             walls.append(wall)
             inside.append(covered(_attempts(database, ("",))))
     shares = [1.0 - stages / wall for stages, wall in zip(inside, walls, strict=True)]
@@ -49,11 +60,12 @@ def scaling(folder: Path, repeat: int, preset: str) -> Table:
     spans: dict[int, list[float]] = {1: [], 2: []}
     for number in range(repeat):
         for workers in spans:
-            with _finished(folder / f"scaling-{number}-{workers}", preset, workers=workers) as (database, _):
+            name = f"scaling-{number}-{workers}"
+            with _finished(folder / name, preset, MANY_WINDOWS, workers=workers) as (database, _):
                 spans[workers].append(covered(_attempts(database, SEARCH)))
     return Table(
         "scaling",
-        f"coarse and refined windows of the sample, preset {preset}, median of {repeat}",
+        f"twenty windows over the sample, preset {preset}, one thread each, median of {repeat}",
         (
             Row("one worker", median(spans[1]), "s"),
             Row("two workers", median(spans[2]), "s"),
@@ -84,14 +96,17 @@ def _attempts(database: Database, stages: tuple[str, ...]) -> list[Interval]:
 
 
 @contextmanager
-def _finished(folder: Path, preset: str, *, workers: int) -> Iterator[tuple[Database, float]]:
+def _finished(
+    folder: Path, preset: str, options: Mapping[str, Any], *, workers: int
+) -> Iterator[tuple[Database, float]]:
     """A server of its own after one job of the sample: its database, and the job's wall seconds."""
     data = folder / "data"
     with serving(data, {"BLADEATLAS_WORKERS": str(workers)}) as server:
         form = {"video": "turbine.mp4", "annotations": "turbine.json"}
         files = [word for name, file in form.items() for word in ("-F", f"{name}=@{SAMPLES / file}")]
         began = time.perf_counter()
-        made = curl(*files, "-F", f'parameters={{"preset": "{preset}"}}', f"{server.url}/v1/inspections")
+        parameters = json.dumps({"preset": preset, "options": dict(options)})
+        made = curl(*files, "-F", f"parameters={parameters}", f"{server.url}/v1/inspections")
         link = f"{server.url}/v1/inspections/{json.loads(made)['id']}"
         while (found := httpx.get(link, params={"wait": 30}, timeout=60).raise_for_status().json())["state"] in ACTIVE:
             pass

@@ -29,10 +29,13 @@ MANY_WINDOWS = {
     "windows.coarse_length": 40,
     "windows.coarse_step": 5,
     "windows.refine_length": 48,
+    "windows.refine_margin": 24,
+    "windows.refine_min": 32,
     "windows.refine_step": 5,
+    "windows.anchor_step": 15,
     "dense.views": 8,
 }
-"""The sample is shorter than one window of the presets; these cut it into about twenty, and leave out what is not timed."""
+"""The sample is shorter than one window of the presets; these cut it into about twenty, a third from scratch."""
 Interval = tuple[datetime, datetime]
 
 

@@ -1,0 +1,124 @@
+"""`map_defects` and `timeline` by casting, as stages: files in, files out, the same bytes twice."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+import cv2  # noqa: F401  (before pycolmap)
+import numpy as np
+import pycolmap
+import pytest
+
+from core.mapping.store import read_observations
+from core.settings import make_settings
+from core.stage import Facts, StageTask
+from core.stages import map_defects, timeline
+from core.surface.ply import Mesh, read_mesh, write_cloud, write_mesh
+from core.viewgraph import make_table, write_database, write_table
+from tests.core import making_plates as plates
+from tests.core.making_plates import NEAR, detection
+
+A, B = (-0.8, 0.2, NEAR), (-1.4, -0.3, NEAR)
+FRAMES = range(8)
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    root = tmp_path_factory.mktemp("inputs")
+    for name in ("annotations", "frames", "extend", "graph", "mesh", "fuse", "probe"):
+        (root / name).mkdir()
+    found = [detection(2 * i + k, place, i) for i in FRAMES for k, place in enumerate((A, B))]
+    rows = [{**one.__dict__, "polygon": None} for one in found]
+    _write(root / "annotations" / "detections.json", rows)
+    _write(root / "annotations" / "looked_at.json", list(FRAMES))
+    frames = [
+        {"index": i, "source_index": i, "pts": i, "time_s": 0.1 * i, "sha256": "", "role": "both"} for i in FRAMES
+    ]
+    _write(root / "frames" / "frames.json", frames)
+    _write(root / "frames" / "crop.json", plates.CROP.to_dict())
+    _model(root / "extend" / "model")
+    table = make_table([], [])
+    write_table(root / "graph" / "graph.npz", table)
+    write_database(
+        root / "graph" / "database.db", plates.camera(), [np.zeros((1, 2), np.float32) for _ in FRAMES], table
+    )
+    mesh = plates.plates()
+    support = np.ones(len(mesh.vertices), np.float32)
+    write_mesh(root / "mesh" / "mesh_poisson.ply", Mesh(mesh.vertices, mesh.faces, extra={"support": support}))
+    write_cloud(root / "fuse" / "fused.ply", Mesh(mesh.vertices))
+    return root
+
+
+def _write(path: Path, value: object) -> None:
+    path.write_text(json.dumps(value), encoding="utf-8")
+
+
+def _model(folder: Path) -> None:
+    """Cameras, and a few points on the near plate that all of them see."""
+    model = pycolmap.Reconstruction()
+    model.add_camera_with_trivial_rig(plates.camera())
+    points = np.array([(x, y, NEAR) for x in np.linspace(-1.6, -0.5, 12) for y in np.linspace(-0.5, 0.4, 8)])
+    ids = [model.add_point3D(point, pycolmap.Track(), np.zeros(3, np.uint8)) for point in points]
+    for frame in FRAMES:
+        xy = np.array([plates.pixel(point, frame) for point in points])
+        keypoints = pycolmap.Point2DList([pycolmap.Point2D(at) for at in xy])
+        image = pycolmap.Image(name=f"{frame:04d}.jpg", points2D=keypoints, camera_id=1, image_id=frame + 1)
+        pose = pycolmap.Rigid3d(np.column_stack([np.eye(3), [-plates.STEP * frame, 0, 0]]))
+        model.add_image_with_trivial_frame(image, pose)
+        for k, point_id in enumerate(ids):
+            model.add_observation(point_id, pycolmap.TrackElement(frame + 1, k))
+    folder.mkdir()
+    model.write_binary(folder)
+
+
+def run_both(inputs: Path, out: Path) -> dict[str, Facts]:
+    folders = {path.name: path for path in inputs.iterdir()}
+    facts: dict[str, Facts] = {}
+    for name, stage in (("map_defects", map_defects), ("timeline", timeline)):
+        folders[name] = out / name
+        folders[name].mkdir(parents=True)
+        settings = make_settings("default")
+        task = StageTask(name, {}, settings, dict(folders), dict(facts), inputs / "none", None, folders[name])
+        facts[name] = stage.run(task).facts
+    return facts
+
+
+def test_files_and_facts(inputs: Path, tmp_path: Path) -> None:
+    facts = run_both(inputs, tmp_path)
+    assert facts["map_defects"]["outcomes"] == {"mapped": 16}
+    assert facts["map_defects"]["support_min"] > 0
+    assert (facts["timeline"]["n_defects"], facts["timeline"]["n_events"]) == (2, 2)
+    rows = json.loads((tmp_path / "timeline" / "detections.json").read_text())
+    for row in rows:
+        assert (row["x"], row["y"], row["z"]) == pytest.approx(A if row["defect_id"] == 0 else B, abs=0.02)
+        assert 0.5 < row["confidence"] < 1.0
+    parts = json.loads((tmp_path / "timeline" / "confidence.json").read_text())
+    assert [part["id"] for part in parts] == list(range(16))
+    assert parts[0]["parts"]["views_support"] == 7
+    mesh = read_mesh(tmp_path / "timeline" / "mesh_defects.ply")
+    for number, place in enumerate((A, B)):
+        near = np.linalg.norm(mesh.vertices - place, axis=1) < 0.1
+        assert (mesh.extra["defect_id"][near] == number).all()
+    away = np.linalg.norm(mesh.vertices[:, None] - np.array([A, B]), axis=2).min(axis=1) > 0.5
+    assert (mesh.extra["defect_id"][away] == -1).all()
+    points = read_mesh(tmp_path / "map_defects" / "defect_points.ply")
+    assert len(points.vertices) == facts["map_defects"]["unique_support_points"] > 4
+
+
+def test_observations_come_back_as_they_were(inputs: Path, tmp_path: Path) -> None:
+    run_both(inputs, tmp_path)
+    read = read_observations(tmp_path / "map_defects")
+    assert [one.row.id for one in read] == list(range(16))
+    assert all(one.parts is not None and one.sigma and len(one.points) > 20 for one in read)
+    assert np.linalg.norm(read[0].points.mean(axis=0) - A) < 0.05
+
+
+def test_the_same_input_gives_the_same_bytes(inputs: Path, tmp_path: Path) -> None:
+    digests = []
+    for name in ("one", "two"):
+        run_both(inputs, tmp_path / name)
+        files = sorted(path for path in (tmp_path / name).rglob("*") if path.is_file())
+        digests.append([hashlib.sha256(path.read_bytes()).hexdigest() for path in files])
+    assert digests[0] == digests[1]

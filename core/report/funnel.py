@@ -32,6 +32,7 @@ def funnel(rows: Sequence[Row], n_defects: int, method: str) -> dict[str, Any]:
         "verified": verified if casts_rays else None,
         "mapped": sum(row["outcome"] == "mapped" for row in rows),
         "approximate": sum(row["outcome"] == "approximate" for row in rows),
+        "unconfirmed": sum(row["outcome"] == "mapped" and row["defect_id"] is None for row in rows),
         "defects": n_defects,
     }
 

@@ -26,6 +26,7 @@ def test_funnel() -> None:
         "verified": 3,
         "mapped": 3,
         "approximate": 0,
+        "unconfirmed": 0,
         "defects": 2,
     }
     by_support = build_report(full_record("thesis")).quality["funnel"]

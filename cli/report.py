@@ -50,7 +50,9 @@ def _funnel(quality: dict[str, Any]) -> list[str]:
     # Approximate places are no step on the way to a defect: they stand beside the mapped ones.
     beside = f" (and {steps.pop('approximate')} approximate)" if steps.get("approximate") else ""
     steps.pop("approximate", None)
-    texts = [f"{name.replace('_', ' ')} {value}{beside if name == 'mapped' else ''}" for name, value in steps.items()]
+    doubted = steps.pop("unconfirmed", 0)
+    extra = {"mapped": beside, "defects": f" (and {doubted} detections that other frames deny)" if doubted else ""}
+    texts = [f"{name.replace('_', ' ')} {value}{extra.get(name, '')}" for name, value in steps.items()]
     return ["", "  " + " -> ".join(texts)] if texts else []
 
 

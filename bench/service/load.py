@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import subprocess
 import time
 from collections import Counter
@@ -20,6 +21,7 @@ POLLERS, UPLOADERS = 200, 20
 SECONDS, PERIOD_S = 60.0, 1.0
 UPLOAD_BYTES = 32 << 20
 SAMPLES = Path("samples")
+_CONTENT_LENGTH = re.compile(rb"(?i)\r\ncontent-length: *(\d+)")
 
 
 def load(folder: Path) -> Table:
@@ -66,25 +68,30 @@ async def _all(server: Server, resource: str, source: Path) -> tuple[list[float]
     end = time.monotonic() + SECONDS
     times: list[float] = []
     statuses: Counter[int] = Counter()
-    limits = httpx.Limits(max_connections=POLLERS, max_keepalive_connections=POLLERS)
-    async with httpx.AsyncClient(base_url=server.url, limits=limits, timeout=30.0) as client:
-        pollers = [_poll(client, resource, end, PERIOD_S * i / POLLERS, times, statuses) for i in range(POLLERS)]
-        uploads = [asyncio.to_thread(_upload, server, source, end) for _ in range(UPLOADERS)]
-        done = await asyncio.gather(*pollers, *uploads)
+    pollers = [_poll(server, resource, end, PERIOD_S * i / POLLERS, times, statuses) for i in range(POLLERS)]
+    uploads = [asyncio.to_thread(_upload, server, source, end) for _ in range(UPLOADERS)]
+    done = await asyncio.gather(*pollers, *uploads)
     return times, statuses, sum(count for count in done if count is not None)
 
 
 async def _poll(
-    client: httpx.AsyncClient, resource: str, end: float, delay: float, times: list[float], statuses: Counter[int]
+    server: Server, resource: str, end: float, delay: float, times: list[float], statuses: Counter[int]
 ) -> None:
+    """One client on one connection; bare HTTP, since 200 clients of httpx wait for each other in one process."""
     await asyncio.sleep(delay)
+    address = httpx.URL(server.url)
+    reader, writer = await asyncio.open_connection(address.host, address.port)
+    request = f"GET {resource} HTTP/1.1\r\nHost: {address.host}\r\n\r\n".encode()
     while time.monotonic() < end:
         began = time.perf_counter()
-        answer = await client.get(resource)
+        writer.write(request)
+        head = await reader.readuntil(b"\r\n\r\n")
+        await reader.readexactly(int(_CONTENT_LENGTH.findall(head)[0]))
         took = time.perf_counter() - began
         times.append(took)
-        statuses[answer.status_code] += 1
+        statuses[int(head.split(b" ", 2)[1])] += 1
         await asyncio.sleep(max(0.0, PERIOD_S - took))
+    writer.close()
 
 
 def _upload(server: Server, source: Path, end: float) -> int:

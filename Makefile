@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint check test bench-speed bench-accuracy bench-service soak lock clean
+.PHONY: help setup demo lint check test bench-speed bench-accuracy bench-scenes bench-service soak lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -35,6 +35,9 @@ bench-speed: setup ## time the parts of RESULT (default out/demo) beside other p
 
 bench-accuracy: setup ## score RESULT (default out/demo) against TRUTH (default samples/truth)
 	$(BIN)/bladeatlas-bench accuracy $(RESULT) $(TRUTH)
+
+bench-scenes: setup ## render, run and score the suite of scenes (an hour and a half), in out/scenes
+	$(BIN)/bladeatlas-bench scenes out/scenes $(SCENES)
 
 bench-service: setup ## time uploads, downloads, many clients and the queue
 	$(BIN)/bladeatlas-bench service $(SERVICE)

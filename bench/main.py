@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.scenes import command as scenes
 from bench.service import command as service
 from bench.soak import command as soak
 from bench.speed import command as speed
@@ -42,6 +43,9 @@ def make_parser() -> argparse.ArgumentParser:
     service_parser = commands.add_parser("service", help="time uploads, downloads, many clients, and the queue")
     service.add_arguments(service_parser)
     service_parser.set_defaults(run=service.command)
+    scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
+    scenes.add_arguments(scenes_parser)
+    scenes_parser.set_defaults(run=scenes.command)
     return parser
 
 

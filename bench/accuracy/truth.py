@@ -63,7 +63,8 @@ class Truth:
 
     lens: Lens
     roi: tuple[float, float, float, float]
-    fps: float
+    times_s: F64
+    """(n,) presentation times of the source frames."""
     centers: F64
     """(n, 3) camera centres of every source frame."""
     rotations: F64
@@ -84,8 +85,9 @@ class Truth:
 
     def frame_at(self, time_s: float) -> int | None:
         """Source frame shown at a time; None outside the clip."""
-        frame = round(time_s * self.fps)
-        return frame if 0 <= frame < self.n_frames else None
+        frame = int(np.abs(self.times_s - time_s).argmin())
+        spacing = float(np.diff(self.times_s).max(initial=0.0)) or 1.0
+        return frame if abs(self.times_s[frame] - time_s) <= spacing / 2 else None
 
 
 def load_truth(folder: Path) -> Truth:
@@ -98,7 +100,7 @@ def load_truth(folder: Path) -> Truth:
         return Truth(
             lens=Lens(int(camera["width"]), int(camera["height"]), float(camera["F"]), float(camera["K3"])),
             roi=tuple(float(value) for value in cameras["roi"]),  # type: ignore[arg-type]  # four by the format
-            fps=float(cameras["fps"]),
+            times_s=_times(cameras, len(poses)),
             centers=poses[:, :3, 3] * MM_PER_M,
             rotations=poses[:, :3, :3],
             chord=float(np.mean(defects["chord_m"])) * MM_PER_M,
@@ -114,6 +116,14 @@ def load_truth(folder: Path) -> Truth:
         raise BadInput(error.message, where="surface.ply") from None
     except (KeyError, TypeError, ValueError) as error:
         raise BadInput(f"the truth in {folder.name} is not in the expected form: {error!r}", where="truth") from None
+
+
+def _times(cameras: dict[str, Any], count: int) -> F64:
+    """Times of the frames: listed, or evenly spaced by the frame rate."""
+    if "times_s" in cameras:
+        return np.asarray(cameras["times_s"], np.float64)
+    times: F64 = np.arange(count) / float(cameras["fps"])
+    return times
 
 
 def _defects(rows: list[dict[str, Any]]) -> dict[int, TrueDefect]:

@@ -1,0 +1,52 @@
+"""`bladeatlas-bench scenes`: render, run and score scenes, resumable, and print the table."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from bench.scenes.suite import FAMILIES
+from core.errors import BadInput
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("out", type=Path, metavar="OUT", help="folder of scenes and scores; it is gone on with")
+    parser.add_argument("--family", choices=sorted(FAMILIES), default="suite", help="which scenes (suite)")
+    parser.add_argument("--only", metavar="NAME,...", default="", help="of these names")
+    parser.add_argument("--thesis", action="store_true", help="by the preset thesis, with auto matching and 4 sources")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="option of the runs")
+    parser.add_argument("--keep", action="store_true", help="keep the result folders")
+    parser.add_argument("--make", action="store_true", help="only render")
+
+
+def command(arguments: argparse.Namespace) -> None:
+    """Run what is missing and print the table; a line on standard error tells each scene's end."""
+    # Imported here so that --help does not load the vision libraries.
+    from bench.scenes.make import is_made, make_scene
+    from bench.scenes.run import DEFAULT, THESIS, Bench, Column
+    from bench.scenes.table import markdown
+
+    family = FAMILIES[arguments.family]
+    wanted = [name for name in arguments.only.split(",") if name] or [scene.name for scene in family]
+    unknown = set(wanted) - {scene.name for scene in family}
+    if unknown:
+        raise BadInput(f"no scene is called {', '.join(sorted(unknown))}", where="--only")
+    scenes = [scene for scene in family if scene.name in wanted]
+    if arguments.make:
+        for scene in scenes:
+            folder = arguments.out / "scenes" / scene.name
+            if not is_made(scene, folder):
+                folder.parent.mkdir(parents=True, exist_ok=True)
+                make_scene(scene, folder)
+        return
+    options = dict(item.split("=", 1) for item in arguments.set)
+    column = THESIS if arguments.thesis else DEFAULT
+    if options:
+        column = Column(f"{column.name}-set", column.preset, {**column.options, **options})
+    bench, found = Bench(arguments.out, arguments.keep), []
+    for scene in scenes:
+        found.append(bench.score(scene, column))
+        print(f"{scene.name}: {found[-1]['verdict']}, {found[-1]['seconds']:.0f} s", file=sys.stderr, flush=True)
+    print(markdown(scenes, found))

@@ -1,0 +1,127 @@
+"""Scenes through the command line and scored: one file for each finished score, so that a table can be gone on with."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bench.accuracy.score import score_result
+from bench.scenes.make import is_made, make_scene
+from bench.scenes.spec import Scene
+from core.errors import StageFailed
+
+LIMIT_S = 900.0
+"""A run that takes longer is ended and counts as failed."""
+PROGRAM = ("core", "cli", "store", "worker")
+"""Packages whose code decides what a run finds."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """How the scenes are run."""
+
+    name: str
+    preset: str
+    options: Mapping[str, str]
+
+
+DEFAULT = Column("default", "default", {})
+THESIS = Column("thesis", "thesis", {"matching.method": "auto", "dense.sources": "4"})
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Where scenes and scores lie: ``scenes/NAME``, ``results/COLUMN/NAME.json``, ``runs/COLUMN/NAME`` while kept."""
+
+    folder: Path
+    keep: bool = False
+    """Keep the result folders, to look at or to fit on."""
+
+    def score(self, scene: Scene, column: Column) -> dict[str, Any]:
+        """The score of a scene, from before when nothing that it depends on has changed."""
+        path = self.folder / "results" / column.name / f"{scene.name}.json"
+        key = f"{scene.digest()[:16]}-{_options_key(column)}-{program_digest()[:16]}"
+        known = _read(path)
+        if known.get("key") == key:
+            return known
+        source = self.folder / "scenes" / scene.name
+        if not is_made(scene, source):
+            source.parent.mkdir(parents=True, exist_ok=True)
+            make_scene(scene, source)
+        found = {"key": key, "scene": scene.name, "column": column.name, **self._run(scene, column, source)}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(".part")
+        part.write_text(json.dumps(found, indent=1, allow_nan=False))
+        part.rename(path)
+        return found
+
+    def _run(self, scene: Scene, column: Column, source: Path) -> dict[str, Any]:
+        out = self.folder / "runs" / column.name / scene.name
+        shutil.rmtree(out, ignore_errors=True)
+        command = [sys.executable, "-m", "cli.main", "run", str(source / "video.mp4"), str(source / "annotations.json")]
+        command += ["--out", str(out), "--preset", column.preset, "--roi", ",".join(f"{v:g}" for v in scene.roi)]
+        for name, value in column.options.items():
+            command += ["--set", f"{name}={value}"]
+        began = time.monotonic()
+        code, said = _finished(command)
+        seconds = time.monotonic() - began
+        quality = _read(out / "quality.json")
+        if not quality:
+            raise StageFailed(f"the run of scene {scene.name} left no quality.json: {said[-500:]}", where=scene.name)
+        found = {
+            "seconds": round(seconds, 1),
+            "exit": code,
+            "verdict": quality.get("verdict"),
+            "flags": sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != "info"}),
+            "funnel": quality.get("funnel"),
+            "score": score_result(out, source / "truth"),
+        }
+        if not self.keep:
+            shutil.rmtree(out)
+        return found
+
+
+def _finished(command: Sequence[str]) -> tuple[int, str]:
+    """Exit code and error output; the whole group of processes ends at the limit."""
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        try:
+            _, said = process.communicate(timeout=LIMIT_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            _, said = process.communicate()
+    return process.returncode, said
+
+
+def _options_key(column: Column) -> str:
+    text = json.dumps([column.preset, sorted(column.options.items())])
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+def program_digest() -> str:
+    """Hash of the code that runs are made by."""
+    digest = hashlib.sha256()
+    root = Path(__file__).parents[2]
+    for package in PROGRAM:
+        for path in sorted((root / package).rglob("*.py")):
+            digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        found: dict[str, Any] = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return {}
+    return found

@@ -1,0 +1,110 @@
+"""Scores of scenes as a table: one row each, the median scene, and what the targets ask for over all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from statistics import median
+from typing import Any
+
+from bench.scenes.spec import Scene
+
+HEAD = (
+    "scene",
+    "verdict",
+    "annotated frames registered",
+    "mapped",
+    "place median / 95 %, % of chord",
+    "wrong",
+    "defects found / split / extra",
+    "false boxes confident and lasting",
+    "ECE",
+    "AUROC",
+    "s",
+)
+Found = dict[str, Any]
+
+
+def chord_mm(scene: Scene) -> float:
+    """Mean of root and tip chord."""
+    return sum(scene.chord_mm) / 2
+
+
+def rows(scenes: Sequence[Scene], found: Sequence[Found]) -> list[list[str]]:
+    """Cells of the table without its head."""
+    return [_row(scene, one) for scene, one in zip(scenes, found, strict=True)] + [_median(scenes, found)]
+
+
+def _row(scene: Scene, one: Found) -> list[str]:
+    score = one["score"]
+    place, defects, confidence = score["placement"], score["defects"], score["confidence"]
+    verdict = str(one["verdict"]) + (f" ({', '.join(one['flags'])})" if one["flags"] else "")
+    if scene.expect == "flagged":
+        verdict += ": as expected" if one["verdict"] != "ok" else ": **not seen**"
+    return [
+        scene.name,
+        verdict,
+        _percent(score["frames"]["registered_annotated_share"]),
+        f"{_percent(place['mapped_share'])} of {place['placeable']}",
+        f"{_of_chord(scene, place['position_median_mm'])} / {_of_chord(scene, place['position_p95_mm'])}",
+        _percent(place["wrong_mapped_share"]),
+        f"{defects['found']} of {defects['expected']} / {defects['split']} / {defects['extra']}",
+        _percent(place["false_boxes"]["mapped_confident_persistent_share"]),
+        _number(confidence["ece"]),
+        _number(confidence["auroc"]),
+        f"{one['seconds']:.0f}",
+    ]
+
+
+def _median(scenes: Sequence[Scene], found: Sequence[Found]) -> list[str]:
+    """Of the scenes that can be reconstructed."""
+    chosen = [(s, one["score"]) for s, one in zip(scenes, found, strict=True) if s.expect == "mapped"]
+
+    def middle(values: list[float | None]) -> float | None:
+        """A scene without a figure is the worst, not none."""
+        return median([v if v is not None else float("nan") for v in values]) if None not in values else None
+
+    registered = median([score["frames"]["registered_annotated_share"] or 0.0 for _, score in chosen])
+    mapped = median([score["placement"]["mapped_share"] or 0.0 for _, score in chosen])
+    places = [
+        middle([_share(scene, score["placement"][name]) for scene, score in chosen if score["placement"][name]])
+        for name in ("position_median_mm", "position_p95_mm")
+    ]
+    wrong = middle([score["placement"]["wrong_mapped_share"] or 0.0 for _, score in chosen])
+    expected = sum(score["defects"]["expected"] for _, score in chosen)
+    sums = [sum(score["defects"][name] for _, score in chosen) for name in ("found", "split", "extra")]
+    return [
+        "**median scene**",
+        "",
+        _percent(registered),
+        _percent(mapped),
+        " / ".join("-" if value is None else f"{100 * value:.1f}" for value in places),
+        _percent(wrong),
+        f"{sums[0]} of {expected} / {sums[1]} / {sums[2]} in all",
+        "",
+        "",
+        "",
+        f"{sum(one['seconds'] for one in found) / 60:.0f} min",
+    ]
+
+
+def markdown(scenes: Sequence[Scene], found: Sequence[Found]) -> str:
+    """The table as text."""
+    lines = ["| " + " | ".join(HEAD) + " |", "| " + " | ".join("---" for _ in HEAD) + " |"]
+    lines += ["| " + " | ".join(row) + " |" for row in rows(scenes, found)]
+    return "\n".join(lines)
+
+
+def _share(scene: Scene, value: float | None) -> float | None:
+    return None if value is None else value / chord_mm(scene)
+
+
+def _of_chord(scene: Scene, value: float | None) -> str:
+    return "-" if value is None else f"{100 * value / chord_mm(scene):.1f}"
+
+
+def _percent(value: float | None) -> str:
+    return "-" if value is None else f"{100 * value:.1f} %"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3f}"

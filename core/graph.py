@@ -52,8 +52,8 @@ _MATCHES = ("matching", "verification", "features.method", "seed")
 STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
-        _spec("probe", "input", reads_video=True, weight=0.2),
-        _spec("annotations", version=2, reads_annotations=True, weight=0.1),
+        _spec("probe", "input.allow_truncated", reads_video=True, weight=0.2),
+        _spec("annotations", "input.time_convention", version=2, reads_annotations=True, weight=0.1),
         _spec("frames", "frames", "roi", "overrides", reads_video=True, weight=0.3),
         _spec("features", "features", fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec("focal", "camera", "matching.ratio", "verification", *_FOCAL_MAPPER, "seed", fan_out=True, weight=7),

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from core.annotations.checks import shown
+from core.annotations.convention import Fitted, fit_convention
 from core.annotations.model import Annotations, Box, Mask, Polygon
 from core.errors import BadInput
 from core.flags import Flag
@@ -43,18 +44,20 @@ class PlacedAnnotations:
     looked_at: tuple[int, ...]
     """Source frames that have a key, with detections or without: the detector saw them."""
     flags: tuple[Flag, ...]
+    convention: Fitted
 
 
-def place(annotations: Annotations, table: FrameTable) -> PlacedAnnotations:
-    """Give every key the frame whose exact PTS is nearest.
+def place(annotations: Annotations, table: FrameTable, convention: str = "auto") -> PlacedAnnotations:
+    """Give every key its frame, by the convention that the keys of the file follow.
 
     Keys outside the video keep their detections, without a frame. A cut-off video has annotations beyond
     its end as a matter of course; otherwise many of them mean the wrong file.
 
     Raises:
-        BadInput: `annotations_beyond_video`.
+        BadInput: `annotations_beyond_video`, `annotation_times_unclear`.
     """
-    frames = {entry.key: table.frame_at(entry.time) for entry in annotations.entries}
+    fitted = fit_convention({entry.key: entry.time for entry in annotations.entries}, table, convention)
+    frames = fitted.reading.frames
     outside = tuple(key for key, frame in frames.items() if frame is None)
     allowed = 1.0 if table.info.truncated else MAX_OUTSIDE_SHARE
     if outside and (len(outside) > allowed * len(frames) or len(outside) == len(frames)):
@@ -70,10 +73,10 @@ def place(annotations: Annotations, table: FrameTable) -> PlacedAnnotations:
         frame = frames[entry.key]
         if frame is not None and entry.masks:
             masks[frame] = (*masks.get(frame, ()), *entry.masks)
-    flags: tuple[Flag, ...] = ()
+    flags = fitted.flags
     if outside:
         where = f"first key {shown(outside[0])}"
-        flags = (Flag("annotations_outside_video", "warning", float(len(outside)), 0.0, where),)
+        flags = (*flags, Flag("annotations_outside_video", "warning", float(len(outside)), 0.0, where))
     return PlacedAnnotations(
         detections=tuple(
             PlacedDetection(
@@ -93,6 +96,7 @@ def place(annotations: Annotations, table: FrameTable) -> PlacedAnnotations:
         keys_outside=outside,
         looked_at=tuple(sorted({frame for frame in frames.values() if frame is not None})),
         flags=flags,
+        convention=fitted,
     )
 
 

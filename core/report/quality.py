@@ -69,6 +69,7 @@ def build_quality(
         "funnel": steps,
         "lost": losses(detections),
         "support": support,
+        "time_convention": record.facts("annotations").get("time_convention"),
         "registration": _registration(record),
         "reprojection_error": _reprojection(record),
         "surface": _surface(record),

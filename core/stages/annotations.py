@@ -16,7 +16,7 @@ def run(task: StageTask) -> StageResult:
     """
     annotations = load_annotations(task.annotations)
     task.report(1, 2, f"{len(annotations.entries)} time keys")
-    placed = place(annotations, FrameTable.read(task.input("probe")))
+    placed = place(annotations, FrameTable.read(task.input("probe")), task.settings.input.time_convention)
     write_placed(placed, task.out)
     summary = summarise(annotations, placed)
     return StageResult(
@@ -27,6 +27,7 @@ def run(task: StageTask) -> StageResult:
             "n_without_frame": sum(d.source_index is None for d in placed.detections),
             "labels": summary.detections_by_label,
             "warnings": list(summary.warnings),
+            "time_convention": placed.convention.to_dict(),
             "flags": [flag.to_dict() for flag in placed.flags],
         }
     )

@@ -34,11 +34,18 @@ def entries(*keys: str) -> dict[str, object]:
     return {key: {"detections": [DENT]} for key in keys}
 
 
-def test_the_nearest_exact_time_decides():
+def test_exact_times_decide():
     table = table_of([0, 100, 300, 310, 1000])
-    placed = place(parse_annotations(entries("0.0", "0.199", "0.201", "0.304", "0.306", "00:00:01")), table)
-    assert [d.source_index for d in placed.detections] == [0, 1, 2, 2, 3, 4]
+    placed = place(parse_annotations(entries("0.0", "0.1", "0.301", "0.309", "00:00:01")), table)
+    assert [d.source_index for d in placed.detections] == [0, 1, 2, 3, 4]
+    assert placed.convention.reading.clock == "pts"
     assert placed.flags == ()
+
+
+def test_times_between_frames_mean_the_one_on_screen():
+    placed = place(parse_annotations(entries("0.01", "0.199", "0.305", "0.9")), table_of([0, 100, 300, 310, 1000]))
+    assert [d.source_index for d in placed.detections] == [0, 1, 2, 3]
+    assert [flag.code for flag in placed.flags] == ["annotation_times_inexact"]
 
 
 def test_keys_rounded_to_four_decimals_meet_their_frame():

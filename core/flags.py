@@ -19,7 +19,7 @@ FLAG_CODES: Mapping[str, str] = {
     "truncated_video": "the video is damaged; only its decodable part was used",
     "times_repaired": "some frames of the video had no usable time of their own; one was filled in",
     "annotations_outside_video": "some time keys of the annotations lie outside the video; they have no frame",
-    "annotation_times_inexact": "some time keys are no time of a frame to their last decimal; the frame on screen is taken",
+    "annotation_times_inexact": "some time keys are no time of any frame; the frame on screen was taken",
     "annotation_times_ambiguous": "the time keys fit several readings that mean other frames; the first was taken",
     "boxes_in_crop_frame": "boxes were scaled to the cropped image, as the thesis does; most places are wrong by it",
     "principal_point_at_crop_centre": "the principal point started at the crop's centre, as the thesis does",

@@ -33,6 +33,9 @@ class FrameSettings(Group):
     time_rule: Literal["pts", "average_rate"] = option(
         "pts", "frame of a clip time: nearest presentation time, or time x average rate", source="exact times"
     )
+    mask_still: bool = option(
+        True, "no keypoints on what never moves in the picture: burned-in text, dirt on the lens", source="method"
+    )
     jpeg_quality: int = option(95, "quality of the exported frames", unit="%", source="OpenCV default", ge=50, le=100)
 
 

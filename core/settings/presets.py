@@ -49,6 +49,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "frames.clip_end_s": 121.0,
         "frames.include_annotated": False,
         "frames.time_rule": "average_rate",
+        "frames.mask_still": False,
         "camera.focal": "colmap",
         "camera.principal_point": "crop",
         "features.subpixel": False,

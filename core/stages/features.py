@@ -16,6 +16,7 @@ from core.features.extract import inside_mask, make_extractor, read_image
 from core.features.io import feature_name, write_features
 from core.roi import Crop
 from core.stage import StageResult, StageTask
+from core.video.still import read_mask
 
 
 def run(task: StageTask) -> StageResult:
@@ -26,13 +27,13 @@ def run(task: StageTask) -> StageResult:
     frames = task.input("frames")
     extract = make_extractor(settings, task.threads)
     mask_of = _blade_masks(task, frames) if settings.blade_masks_only else None
+    moving = ~read_mask(frames / "still.png")
     counts = []
     for done, index in enumerate(range(start, end)):
         task.report(done, end - start, f"frame {index}")
         features = extract(read_image(frames / "images" / f"{index:04d}.jpg"))
         mask = mask_of(index) if mask_of else None
-        if mask is not None:
-            features = inside_mask(features, mask)
+        features = inside_mask(features, moving if mask is None else moving & mask)
         write_features(task.out / feature_name(index), features)
         counts.append(len(features))
     task.report(1, 1)

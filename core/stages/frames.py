@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
+
 from core.annotations.placed import load_detections
+from core.flags import Flag
 from core.roi import crop_of
 from core.sampling import choose_frames, clip_interval
 from core.stage import StageResult, StageTask
-from core.video.export import export_frames
+from core.video.export import export_frames, image_name
+from core.video.still import find_still, write_mask
 from core.video.table import FrameTable
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `images/`, `frames.json` and `crop.json`; `BadInput` for an impossible interval or region."""
+    """Write `images/`, `frames.json`, `crop.json` and `still.png`; `BadInput` for an impossible interval or region."""
     settings = task.settings
     table = FrameTable.read(task.input("probe"))
     detections = load_detections(task.input("annotations"))
@@ -45,6 +49,12 @@ def run(task: StageTask) -> StageResult:
         }
         for frame in chosen
     ]
+    shown = sorted(chosen, key=lambda frame: frame.source_index)
+    still = find_still([images / image_name(frame.index) for frame in shown])
+    flags = list(interval.flags)
+    if settings.frames.mask_still and still.share:
+        flags.append(Flag("still_pixels_masked", "info", still.share, 0.0, f"{still.frames} frames compared"))
+    write_mask(task.out / "still.png", still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
     (task.out / "frames.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     (task.out / "crop.json").write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")
     return StageResult(
@@ -54,6 +64,7 @@ def run(task: StageTask) -> StageResult:
             "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
             "source_width": crop.source_width,
             "source_height": crop.source_height,
-            "flags": [flag.to_dict() for flag in interval.flags],
+            "still_share": round(still.share, 6),
+            "flags": [flag.to_dict() for flag in flags],
         }
     )

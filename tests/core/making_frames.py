@@ -9,6 +9,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from core.video.still import write_mask
+
 SIZE = (200, 160)
 
 
@@ -30,4 +32,5 @@ def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] |
     (folder / "frames.json").write_text(json.dumps(rows), encoding="utf-8")
     crop = {"x0": 10, "y0": 20, "x1": 10 + SIZE[0], "y1": 20 + SIZE[1], "source_width": 250, "source_height": 200}
     (folder / "crop.json").write_text(json.dumps(crop), encoding="utf-8")
+    write_mask(folder / "still.png", np.zeros((crop["y1"] - crop["y0"], crop["x1"] - crop["x0"]), bool))
     return folder

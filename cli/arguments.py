@@ -31,12 +31,31 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
     check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
     _json(check)
+    _questions(commands)
     options = _add(commands, "options", "list every option: meaning, unit, default, range, source")
     _preset(options)
     _json(options)
     _json(_add(commands, "version", "print the versions of this program and of the engines it uses"))
     add_remote_commands(commands, _EXIT_CODES)
     return top
+
+
+def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """What can be asked of a finished result."""
+    point = _add(commands, "point", "say which point of the surface a pixel of a frame shows")
+    point.add_argument("--frame", type=int, metavar="N", help="frame of the video, from 0")
+    point.add_argument("--time", type=float, metavar="SECONDS", help="or the frame nearest to this time")
+    point.add_argument(
+        "--pixel", required=True, metavar="X,Y", help="pixels from the upper left corner of the whole frame"
+    )
+    views = _add(commands, "views", "list the frames that see a point of the surface, best first")
+    views.add_argument("--point", metavar="X,Y,Z", help="in model units")
+    views.add_argument("--defect", type=int, metavar="ID", help="or the place of a defect")
+    views.add_argument("--limit", type=int, default=20, metavar="N", help="frames listed, at most (20)")
+    for one in (point, views):
+        one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+        one.add_argument("--model", type=int, default=0, metavar="N", help="of several models (0)")
+        _json(one)
 
 
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -52,6 +52,11 @@ TABLES: tuple[str, ...] = (
 """Written for every run that ended, whatever it reached; summary.json last, so its presence says: complete."""
 
 
+def evidence_name(defect: int) -> str:
+    """File of a defect's picture in the gallery."""
+    return f"defect_{defect:03d}.jpg"
+
+
 def best_case(facts: Mapping[str, Facts]) -> str:
     """Task key of the case that the search chose; empty before the first reducer."""
     for reducer in ("reduce_refine", "reduce_coarse"):

@@ -14,6 +14,7 @@ from typing import Any
 
 from core.gallery.assets import SCRIPT, STYLE
 from core.gallery.boxes import FrameBoxes
+from core.gallery.evidence import Evidence
 from core.gallery.palette import RGB
 from core.mapping.rows import REASONS, DetectionRow
 
@@ -31,6 +32,7 @@ def gallery_page(
     rows: Sequence[DetectionRow],
     events: Sequence[Mapping[str, Any]],
     colors: Mapping[str, RGB],
+    evidence: Sequence[Evidence] = (),
 ) -> str:
     """The whole page as one string.
 
@@ -40,9 +42,11 @@ def gallery_page(
         rows: all detections.
         events: rows of the timeline.
         colors: by label, as drawn in the pictures.
+        evidence: of the defects, each with a picture beside the page.
     """
     mapped = sum(row.outcome == "mapped" for row in rows)
-    lead = f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {len(events)} defects"
+    n_defects = len({event["defect_id"] for event in events})
+    lead = f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {n_defects} defects"
     return "\n".join(
         [
             "<!doctype html>",
@@ -53,6 +57,7 @@ def gallery_page(
             "<main>",
             _views(),
             _events(events, frames),
+            _evidence(evidence),
             _gallery(frames, n_frames, rows, colors),
             "</main>",
             f"<footer><p>{_e(_without_frame(rows))}</p></footer>",
@@ -109,6 +114,19 @@ def _event_row(event: Mapping[str, Any], frames: Sequence[FrameBoxes]) -> str:
         f"<td>{int(event['n_detections'])}</td><td>{int(event['n_frames'])}</td><td>{_e(place)}</td>"
         f'<td>{event["radius"]:.3f}</td><td class="t">{link}</td></tr>'
     )
+
+
+def _evidence(evidence: Sequence[Evidence]) -> str:
+    """A picture of every defect; nothing by rules that make none."""
+    if not evidence:
+        return ""
+    figures = "".join(
+        f'<figure><a href="{_e(one.file_name)}">'
+        f'<img src="{_e(one.file_name)}" alt="{_e(one.caption)}" loading="lazy"></a>'
+        f"<figcaption>{_e(one.caption)}</figcaption></figure>"
+        for one in evidence
+    )
+    return f'<section aria-labelledby="v"><h2 id="v">Evidence</h2><div class="views">{figures}</div></section>'
 
 
 def _gallery(

@@ -33,10 +33,17 @@ def build_summary(
         "inputs": dict(record.inputs),
         "fingerprint": run_fingerprint(record),
         "versions": dict(record.versions),
+        "frame": _frame(record),
         "scale": {"unit": "model", "value": None, "sigma": None},
         "stages": _stages(record.tasks),
         "headline": _headline(record, detections, timeline, defects),
     }
+
+
+def _frame(record: RunRecord) -> dict[str, Any]:
+    """Size of the video's frames and the part of them that was used, px: x0, y0, x1, y1 (half open)."""
+    facts = record.facts("frames")
+    return {"width": facts.get("source_width"), "height": facts.get("source_height"), "crop": facts.get("crop")}
 
 
 def run_fingerprint(record: RunRecord) -> str:

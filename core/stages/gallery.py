@@ -9,6 +9,7 @@ import numpy as np
 
 from core.errors import DiskFull
 from core.gallery.boxes import FrameBoxes, choose_frames, draw_boxes, draw_defect_numbers, group_by_frame
+from core.gallery.evidence import Evidence, draw_evidence, evidence_of
 from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
 from core.mapping.rows import DetectionRow
@@ -31,27 +32,36 @@ def run(task: StageTask) -> StageResult:
     frames = group_by_frame(rows, source)
     chosen = choose_frames(frames, settings.max_frames)
     colors = label_colors([row.label for row in rows])
-    _write_frames(task, chosen, colors)
+    defects = read_json(task.input("timeline") / "defects.json")
+    evidence = evidence_of(defects, rows) if task.settings.mapping.method == "surface" else []
+    _write_frames(task, chosen, colors, evidence)
     _write_views(task)
     events = read_json(task.input("timeline") / "timeline.json")
-    page = gallery_page(chosen, len(frames), rows, events, colors)
+    page = gallery_page(chosen, len(frames), rows, events, colors, evidence)
     (task.out / "index.html").write_text(page, encoding="utf-8", newline="\n")
     return StageResult({"n_images": len(chosen), "n_frames": len(frames)})
 
 
-def _write_frames(task: StageTask, chosen: list[FrameBoxes], colors: dict[str, tuple[int, int, int]]) -> None:
-    """Decode the video once, in order, and write the chosen frames with their boxes."""
+def _write_frames(
+    task: StageTask, chosen: list[FrameBoxes], colors: dict[str, tuple[int, int, int]], evidence: list[Evidence]
+) -> None:
+    """Decode the video once, in order, and write the chosen frames with their boxes, and the evidence of defects."""
     wanted = {frame.source_index: frame for frame in chosen}
-    if not wanted:
+    source = {row["index"]: row["source_index"] for row in read_json(task.input("frames") / "frames.json")}
+    shown: dict[int, list[Evidence]] = {}
+    for one in evidence:
+        shown.setdefault(source[one.frame_index], []).append(one)
+    if not wanted and not shown:
         return
-    last = max(wanted)
+    last = max([*wanted, *shown])
     with VideoReader(task.video) as reader:
         for decoded in reader.frames():
             frame = wanted.get(decoded.index)
+            quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
             if frame is not None:
-                picture = draw_boxes(decoded.rgb(), frame.rows, colors)
-                quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
-                _write_image(task, frame.file_name, picture, quality)
+                _write_image(task, frame.file_name, draw_boxes(decoded.rgb(), frame.rows, colors), quality)
+            for one in shown.get(decoded.index, ()):
+                _write_image(task, one.file_name, draw_evidence(decoded.rgb(), one), quality)
             task.report(0.5 * decoded.index, last + 1, f"frame {decoded.index} of {last}")
             if decoded.index >= last:
                 break

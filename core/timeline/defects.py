@@ -14,6 +14,7 @@ from core.mapping.confidence import confidence
 from core.mapping.rows import DetectionRow
 from core.mapping.scene import Scene
 from core.mapping.surface_rules import Observation
+from core.outputs import evidence_name
 from core.timeline.events import EventRow, leading_label
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.seen import views_of_place, visits
@@ -94,7 +95,7 @@ def _defect(
     normal = sum((one.normal for one in own), np.zeros(3))
     normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
     points = _core(own, place)
-    seen = views_of_place(points, normal, scene.views, scene.surface, scene.tolerance)
+    seen = views_of_place(points, normal, scene.views, scene.surface, scene.tolerance, nearest[0], scene.crop)
     detected = sorted({one.row.frame_index for one in own if one.row.frame_index is not None}, key=lambda i: times_s[i])
     n = len(set(detected) | {sighting.frame_index for sighting in seen if sighting.frame_index in looked})
     return Defect(
@@ -215,6 +216,7 @@ def defect_records(
                 "detections": [row.id for row in rows],
                 "approximate_detections": _approximate(found.observations, number),
                 "frames": [sighting.to_dict(sighting.frame_index in detected) for sighting in defect.sightings],
+                "evidence": f"gallery/{evidence_name(number)}",
                 "faces": [int(face) for face in faces[number]],
                 "blade": None,
             }

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from core.mapping.consensus import could_see
 from core.mapping.surface import Surface
 from core.mapping.views import Views
+from core.roi import Crop
 from core.timeline.visibility import MIN_VISIBLE_SHARE, Sighting
 
 F64 = NDArray[np.float64]
@@ -21,7 +22,15 @@ AWAY_S = 0.5
 """for at least so long, what comes after is another visit."""
 
 
-def views_of_place(points: F64, normal: F64, views: Views, surface: Surface, tolerance: float) -> list[Sighting]:
+def views_of_place(
+    points: F64,
+    normal: F64,
+    views: Views,
+    surface: Surface,
+    tolerance: float,
+    place: F64 | None = None,
+    crop: Crop | None = None,
+) -> list[Sighting]:
     """Views that could see most of a place, best first (earlier first among equals).
 
     Args:
@@ -30,6 +39,8 @@ def views_of_place(points: F64, normal: F64, views: Views, surface: Surface, tol
         views: registered images.
         surface: what may hide it.
         tolerance: depth by which the surface may lie before a point, scene units.
+        place: (3,) whose pixel is told with every view; needs `crop`.
+        crop: from source to exported frames.
     """
     if len(points) > MAX_SAMPLES:
         points = points[np.linspace(0, len(points) - 1, MAX_SAMPLES).round().astype(int)]
@@ -41,7 +52,11 @@ def views_of_place(points: F64, normal: F64, views: Views, surface: Surface, tol
     quality = np.clip(towards @ normal / distance, 0.0, 1.0) / distance**2
     chosen = np.flatnonzero(seen.mean(axis=0) >= MIN_VISIBLE_SHARE)
     best = float(quality[chosen].max(initial=0.0)) or 1.0
-    found = [Sighting(int(views.frame_index[k]), float(quality[k]) / best) for k in chosen]
+    at: list[tuple[float, float] | None] = [None] * len(rows)
+    if place is not None and crop is not None:
+        xy = views.project(place[None])[0][0] + np.array([crop.x0, crop.y0])
+        at = [(float(x) / crop.source_width, float(y) / crop.source_height) for x, y in xy]
+    found = [Sighting(int(views.frame_index[k]), float(quality[k]) / best, at[k]) for k in chosen]
     return sorted(found, key=lambda sighting: (-sighting.quality, sighting.frame_index))
 
 

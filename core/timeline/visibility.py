@@ -42,10 +42,15 @@ class Sighting:
     frame_index: int
     quality: float
     """cos(angle of incidence) / squared distance, relative to the best view of the place, in [0, 1]."""
+    at: tuple[float, float] | None = None
+    """Where the place appears, normalised on the source frame; None = not asked."""
 
     def to_dict(self, detected: bool) -> dict[str, Any]:
         """JSON form; `detected` says whether the defect was detected in that frame."""
-        return {"frame_index": self.frame_index, "quality": round(self.quality, 4), "detected": detected}
+        row = {"frame_index": self.frame_index, "quality": round(self.quality, 4), "detected": detected}
+        if self.at is not None:
+            row["x"], row["y"] = (round(value, 5) for value in self.at)
+        return row
 
 
 def views_of_model(model: Any) -> list[View]:

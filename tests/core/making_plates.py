@@ -7,6 +7,7 @@ depend on the unit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
@@ -152,3 +153,21 @@ def depth_maps_of(mesh: Mesh, frames: Sequence[int], scale: float = 1.0) -> Dept
         return np.where(hits.hit, hits.distance, 0.0), own
 
     return DepthMaps(np.array(sorted(frames), np.int64), distances)
+
+
+def write_model(folder: Path, frames: Sequence[int]) -> None:
+    """Cameras, and a few points on the near plate that all of them see."""
+    model = pycolmap.Reconstruction()
+    model.add_camera_with_trivial_rig(camera())
+    points = np.array([(x, y, NEAR) for x in np.linspace(-1.6, -0.5, 12) for y in np.linspace(-0.5, 0.4, 8)])
+    ids = [model.add_point3D(point, pycolmap.Track(), np.zeros(3, np.uint8)) for point in points]
+    for frame in frames:
+        xy = np.array([pixel(point, frame) for point in points])
+        keypoints = pycolmap.Point2DList([pycolmap.Point2D(at) for at in xy])
+        image = pycolmap.Image(name=f"{frame:04d}.jpg", points2D=keypoints, camera_id=1, image_id=frame + 1)
+        pose = pycolmap.Rigid3d(np.column_stack([np.eye(3), [-STEP * frame, 0, 0]]))
+        model.add_image_with_trivial_frame(image, pose)
+        for k, point_id in enumerate(ids):
+            model.add_observation(point_id, pycolmap.TrackElement(frame + 1, k))
+    folder.mkdir()
+    model.write_binary(folder)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
-import pycolmap
 import pytest
 
 from core.mapping.store import read_observations
@@ -38,7 +37,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ]
     _write(root / "frames" / "frames.json", frames)
     _write(root / "frames" / "crop.json", plates.CROP.to_dict())
-    _model(root / "extend" / "model")
+    plates.write_model(root / "extend" / "model", FRAMES)
     table = make_table([], [])
     write_table(root / "graph" / "graph.npz", table)
     write_database(
@@ -53,24 +52,6 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def _write(path: Path, value: object) -> None:
     path.write_text(json.dumps(value), encoding="utf-8")
-
-
-def _model(folder: Path) -> None:
-    """Cameras, and a few points on the near plate that all of them see."""
-    model = pycolmap.Reconstruction()
-    model.add_camera_with_trivial_rig(plates.camera())
-    points = np.array([(x, y, NEAR) for x in np.linspace(-1.6, -0.5, 12) for y in np.linspace(-0.5, 0.4, 8)])
-    ids = [model.add_point3D(point, pycolmap.Track(), np.zeros(3, np.uint8)) for point in points]
-    for frame in FRAMES:
-        xy = np.array([plates.pixel(point, frame) for point in points])
-        keypoints = pycolmap.Point2DList([pycolmap.Point2D(at) for at in xy])
-        image = pycolmap.Image(name=f"{frame:04d}.jpg", points2D=keypoints, camera_id=1, image_id=frame + 1)
-        pose = pycolmap.Rigid3d(np.column_stack([np.eye(3), [-plates.STEP * frame, 0, 0]]))
-        model.add_image_with_trivial_frame(image, pose)
-        for k, point_id in enumerate(ids):
-            model.add_observation(point_id, pycolmap.TrackElement(frame + 1, k))
-    folder.mkdir()
-    model.write_binary(folder)
 
 
 def run_both(inputs: Path, out: Path) -> dict[str, Facts]:

@@ -74,7 +74,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("refine", "mapper", "seed", fan_out=True, weight=21),
         _spec("reduce_refine", weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "seed", weight=6),
-        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", weight=16),
+        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=2, weight=16),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
         _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=24),
         _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=21),

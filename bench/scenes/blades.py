@@ -108,7 +108,7 @@ def build_row(scene: Scene) -> Row:
 
 
 def _choose_defects(scene: Scene, in_view: int, rng: np.random.Generator) -> list[Defect]:
-    """Spread over the blades, kinds in turn, on the pressure side or at the leading edge, which the probe sees."""
+    """Spread over the blades, kinds in turn, on the convex side or at the leading edge, which the probe sees."""
     blades = np.linspace(0, in_view, scene.n_defects + 2)[1:-1].round().astype(int)
     found = []
     for number, blade in enumerate(blades.tolist()):
@@ -116,8 +116,8 @@ def _choose_defects(scene: Scene, in_view: int, rng: np.random.Generator) -> lis
         span = float(rng.uniform(0.2, 0.85))
         chord = 0.0 if kind == "nick" else float(rng.uniform(0.08, 0.42))
         radius = float(rng.uniform(1.2, 1.7) if kind in ("nick", "dent") else rng.uniform(1.6, 3.0))
-        center = surface_point(scene, blade, span, chord, -1)
-        found.append(Defect(number, blade, kind, span, chord, -1, radius, center))
+        center = surface_point(scene, blade, span, chord, 1)
+        found.append(Defect(number, blade, kind, span, chord, 1, radius, center))
     return found
 
 

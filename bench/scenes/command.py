@@ -18,6 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--thesis", action="store_true", help="by the preset thesis, with auto matching and 4 sources")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="option of the runs")
     parser.add_argument("--keep", action="store_true", help="keep the result folders")
+    parser.add_argument("--fit", action="store_true", help="fit the confidence on the kept runs of the family")
     parser.add_argument("--make", action="store_true", help="only render")
 
 
@@ -40,6 +41,12 @@ def command(arguments: argparse.Namespace) -> None:
             if not is_made(scene, folder):
                 folder.parent.mkdir(parents=True, exist_ok=True)
                 make_scene(scene, folder)
+        return
+    if arguments.fit:
+        from bench.scenes.fit import collect, report
+
+        kept = [scene.name for scene in scenes if (arguments.out / "runs" / "default" / scene.name).is_dir()]
+        print(report([collect(arguments.out, name) for name in kept]))
         return
     options = dict(item.split("=", 1) for item in arguments.set)
     column = THESIS if arguments.thesis else DEFAULT

@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-VERSION = 1
+VERSION = 2
 """Of the renderer: another one makes other scenes of the same description."""
 
 

@@ -18,7 +18,7 @@ OPTIONS = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
 
 @pytest.fixture(scope="module")
 def scene():
-    return make_scene(18)
+    return make_scene(36)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def graph(scene, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def model(graph):
-    return run_case(Case(graph, 0, 18, SETTINGS, 0)).model
+    return run_case(Case(graph, 0, 36, SETTINGS, 0)).model
 
 
 @pytest.fixture(scope="module")
@@ -109,3 +109,9 @@ def test_mismatches_move_cameras_less_when_they_count_less(model, cache, scene):
         adjust(start, cache, OPTIONS, refine_principal_point=False, loss_scale_px=scale).model for scale in (0.5, 0.0)
     )
     assert np.median(center_errors(robust, scene)) < np.median(center_errors(squares, scene))
+
+
+def test_a_narrow_motion_does_not_determine_a_principal_point(graph):
+    narrow = run_case(Case(graph, 0, 14, SETTINGS, 0)).model
+    found = free_principal_point(narrow, adjustment_options(True, 0.0, 1))
+    assert (found.refined, found.reason) == (False, "uncertain")

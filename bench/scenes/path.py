@@ -14,7 +14,7 @@ from bench.scenes.spec import Scene
 
 F64 = NDArray[np.float64]
 
-SLOWNESS = 5
+SLOWNESS = 12
 """Frames over which the hand's motion changes."""
 
 

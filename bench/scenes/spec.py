@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-VERSION = 2
+VERSION = 3
 """Of the renderer: another one makes other scenes of the same description."""
 
 
@@ -52,7 +52,8 @@ class Scene:
     turn_deg: float = 46.0
     """The rotor turns by this much over the clip."""
     distance_mm: float = 42.0
-    wobble_mm: float = 0.6
+    wobble_mm: float = 2.2
+    """The probe strays by this much; with less, the camera centres hardly fix the similarity that results are aligned by."""
     stall: Span | None = None
     """The rotor stands still."""
     reverse_at: int | None = None

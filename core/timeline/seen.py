@@ -55,7 +55,9 @@ def views_of_place(
     at: list[tuple[float, float] | None] = [None] * len(rows)
     if place is not None and crop is not None:
         xy = views.project(place[None])[0][0] + np.array([crop.x0, crop.y0])
-        at = [(float(x) / crop.source_width, float(y) / crop.source_height) for x, y in xy]
+        at = [
+            (float(x) / crop.source_width, float(y) / crop.source_height) if np.isfinite(x + y) else None for x, y in xy
+        ]
     found = [Sighting(int(views.frame_index[k]), float(quality[k]) / best, at[k]) for k in chosen]
     return sorted(found, key=lambda sighting: (-sighting.quality, sighting.frame_index))
 

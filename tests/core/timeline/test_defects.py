@@ -12,7 +12,7 @@ from core.mapping.rows import Detection
 from core.mapping.surface_rules import Observation, place_on_surface
 from core.timeline.defects import Found, defect_records, event_rows, find_defects
 from core.timeline.instances import existence, fused_place, group_observations
-from core.timeline.seen import visits
+from core.timeline.seen import views_of_place, visits
 from tests.core import making_plates as plates
 from tests.core.making_plates import NEAR, detection, scene, times
 
@@ -134,6 +134,19 @@ def test_events_and_records_agree() -> None:
     )
     nearest = min(FRAMES, key=lambda frame: abs(plates.STEP * frame - A[0]))
     assert first["frames"][0]["frame_index"] == nearest
+
+
+def test_a_place_that_a_view_cannot_show_has_no_pixel() -> None:
+    """The sampled surface may be in view where the place itself is behind the camera."""
+    made = scene(FRAMES)
+    points = np.array(A) + np.zeros((4, 3))
+    facing = np.array([0.0, 0.0, -1.0])
+    behind = np.array([0.0, 0.0, -5.0])
+    seen = views_of_place(points, facing, made.views, made.surface, made.tolerance, behind, made.crop)
+    assert len(seen) == len(FRAMES)
+    assert all(one.at is None and "x" not in one.to_dict(True) for one in seen)
+    shown = views_of_place(points, facing, made.views, made.surface, made.tolerance, np.array(A), made.crop)
+    assert all(one.at is not None and 0 < one.at[0] < 1 for one in shown)
 
 
 def test_estimates_join_a_defect_and_make_none() -> None:

@@ -53,7 +53,7 @@ class Scene:
     """The rotor turns by this much over the clip."""
     distance_mm: float = 42.0
     wobble_mm: float = 2.2
-    """The probe strays by this much; with less, the camera centres hardly fix the similarity that results are aligned by."""
+    """The probe strays by this much; with less, its path hardly fixes the similarity that results are aligned by."""
     stall: Span | None = None
     """The rotor stands still."""
     reverse_at: int | None = None

@@ -97,7 +97,7 @@ def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
 def _patches(scene: Scene, sight: Sight) -> tuple[list[Patch], bool]:
     """Patches large enough, nearest first, and whether the pixels meet only the back of the surface."""
     rays = scene.views.rays(sight.samples.xy, sight.R)
-    hits = scene.surface.cast(np.broadcast_to(sight.origin, rays.shape), rays)
+    hits = scene.surface.cast_front(np.broadcast_to(sight.origin, rays.shape), rays, 0.5 * scene.spacing)
     found = split_patches(sight.samples, sight.origin, rays, hits, scene.spacing)
     return [patch for patch in found if patch.share >= MIN_SHARE], bool((hits.hit & (hits.cosine <= 0)).any())
 

@@ -14,6 +14,10 @@ I64 = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
+MAX_BACKS = 4
+"""Backs of faces that a ray goes through on its way to a front."""
+
+
 @dataclass(frozen=True)
 class Hits:
     """What each of n rays meets first."""
@@ -54,6 +58,35 @@ class Surface:
         hit = np.isfinite(distance)
         face = np.where(hit, answer["primitive_ids"].numpy().astype(np.int64), -1)
         return Hits(hit, distance, -(normal * directions).sum(axis=1), face)
+
+    def cast_front(self, origins: F64, directions: F64, step: float) -> Hits:
+        """First hits that see a face from its front, going on through backs.
+
+        No camera sees the back of a solid: a back before a front is a stray sheet. Rays that meet nothing but
+        backs keep their first.
+
+        Args:
+            origins: (n, 3)
+            directions: (n, 3) unit.
+            step: by which a ray goes on behind a back, scene units.
+        """
+        first = self.cast(origins, directions)
+        distance, cosine, face = first.distance.copy(), first.cosine.copy(), first.face.copy()
+        behind = np.flatnonzero(first.hit & (first.cosine <= 0))
+        gone = first.distance[behind] + step
+        for _ in range(MAX_BACKS):
+            if not len(behind):
+                break
+            start = origins[behind] + gone[:, None] * directions[behind]
+            further = self.cast(start, directions[behind])
+            front = further.hit & (further.cosine > 0)
+            rows = behind[front]
+            distance[rows], face[rows] = gone[front] + further.distance[front], further.face[front]
+            cosine[rows] = further.cosine[front]
+            left = further.hit & ~front
+            gone = gone[left] + further.distance[left] + step
+            behind = behind[left]
+        return Hits(first.hit, distance, cosine, face)
 
     def nearest(self, points: F64) -> tuple[F64, I64]:
         """(n, 3) points of the surface nearest to the given ones, and their faces.

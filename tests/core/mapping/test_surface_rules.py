@@ -110,6 +110,17 @@ def test_the_back_of_a_surface_is_no_place() -> None:
     assert (found.row.outcome, found.row.reason) == ("unplaced", "occluded")
 
 
+def test_a_stray_sheet_that_shows_its_back_is_seen_through() -> None:
+    sheet = plates.plate((-1.2, -0.4), (-0.2, 0.6), 3.5)
+    backs = [
+        type(sheet)(sheet.vertices + np.array([0, 0, dz]), np.ascontiguousarray(sheet.faces[:, ::-1]))
+        for dz in (0, 0.2)
+    ]
+    for one in placed(seen_in(ON_NEAR), mesh=plates.plates(*backs)):
+        assert one.row.outcome == "mapped"
+        assert xyz(one) == pytest.approx(ON_NEAR, abs=0.02)
+
+
 def test_a_frame_without_pose_is_placed_between_its_neighbours_or_not_at_all() -> None:
     frames = [0, 1, 2, 3, 5, 6, 7, 8]
     between = placed([detection(0, ON_NEAR, 4)], frames=frames)[0]

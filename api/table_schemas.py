@@ -28,6 +28,7 @@ class Case(BaseModel):
                 "seconds": 48.1,
                 "start_mode": "scratch",
                 "selected": 1,
+                "vetoed": 0,
             }
         }
     )
@@ -47,6 +48,7 @@ class Case(BaseModel):
     seconds: float
     start_mode: str | None
     selected: int
+    vetoed: int = Field(description="1: a check calls the model wrong; it wins only where model.veto is off")
 
 
 class Metric(BaseModel):

@@ -68,19 +68,20 @@ STAGES: dict[str, StageSpec] = {
             weight=45,
             weights=(LIGHTGLUE_WEIGHTS,),
         ),
+        _spec("bridge", "matching", "verification", "features.method", "seed", weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),
-        _spec("coarse", "mapper", "seed", fan_out=True, weight=25),
-        _spec("reduce_coarse", weight=0.1),
-        _spec("refine", "mapper", "seed", fan_out=True, weight=21),
-        _spec("reduce_refine", weight=0.1),
-        _spec("confirm", "mapper", "model.confirm", "seed", weight=6),
-        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=2, weight=16),
+        _spec("coarse", "mapper", "seed", version=2, fan_out=True, weight=25),
+        _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
+        _spec("refine", "mapper", "seed", version=2, fan_out=True, weight=21),
+        _spec("reduce_refine", "model.veto", version=2, weight=0.1),
+        _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=2, weight=6),
+        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=3, weight=16),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
         _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=24),
         _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=21),
         _spec("fuse", "fusion", "dense", weight=3),
         _spec("mesh", "mesh", weight=2),
-        _spec("map_defects", "mapping", version=3, weight=0.6),
+        _spec("map_defects", "mapping", version=4, weight=0.6),
         _spec("timeline", "mapping", "timeline", version=2, weight=0.5),
         _spec("gallery", "gallery", "mapping.method", version=2, reads_video=True, weight=1),
     )
@@ -151,7 +152,12 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
         for i, (a, b) in enumerate(chunks)
     ]
     tasks += matches
-    tasks.append(TaskSpec("graph", ("frames", "camera", *feature_keys, *(task.key for task in matches))))
+    match_keys = tuple(task.key for task in matches)
+    bridge_keys: tuple[str, ...] = ()
+    if settings.matching.bridge:
+        tasks.append(TaskSpec("bridge", ("frames", "camera", *feature_keys, *match_keys)))
+        bridge_keys = ("bridge",)
+    tasks.append(TaskSpec("graph", ("frames", "camera", *feature_keys, *match_keys, *bridge_keys)))
     return tasks
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,7 +16,7 @@ from core.video.table import FrameTable
 MIN_CLIPPED_S = 10
 """A preset's interval that keeps less than this of the video says nothing about it; the whole is used."""
 
-Role = Literal["sampled", "annotated", "both", "added"]
+Role = Literal["sampled", "annotated", "both", "neighbour", "added"]
 
 
 @dataclass(frozen=True)
@@ -106,16 +107,20 @@ def sample_uniformly(first: int, last: int, count: int) -> list[int]:
     return [first + (2 * i * (last - first) + steps) // (2 * steps) for i in range(count)]
 
 
-def choose_frames(interval: Interval, annotated: Collection[int], settings: FrameSettings) -> list[ChosenFrame]:
-    """Sampled and annotated frames by time, then the annotated ones that the budget leaves over.
+def choose_frames(
+    interval: Interval, annotated: Collection[int], settings: FrameSettings, reach: int = 0
+) -> list[ChosenFrame]:
+    """Sampled and annotated frames and neighbours by time, then the annotated ones that the budget leaves over.
 
     Args:
         interval: the used part of the video.
         annotated: source frames with a detection; those outside the interval are left alone.
         settings: count, include_annotated, max_count.
+        reach: source frames within which an annotated frame has a chosen one on either side, as far as the budget
+            goes: alone between distant samples it could not be matched with any. 0 adds none.
 
     Returns:
-        Frames of the search numbered by time from 0 (roles `sampled`, `annotated`, `both`), followed by
+        Frames of the search numbered by time from 0 (roles `sampled`, `annotated`, `both`, `neighbour`), followed by
         those to register afterwards (role `added`), by time too.
     """
     sampled = sample_uniformly(interval.first, interval.last, settings.count)
@@ -125,15 +130,32 @@ def choose_frames(interval: Interval, annotated: Collection[int], settings: Fram
     extra = sorted(wanted.difference(sampled))
     room = max(0, settings.max_count - len(sampled))
     taken = _spread(extra, room)
-    search = sorted({*sampled, *taken})
+    alone = _missing_neighbours({*sampled, *taken}, wanted.intersection({*sampled, *taken}), interval, reach)
+    neighbours = set(_spread(alone, max(0, room - len(taken))))
+    search = sorted({*sampled, *taken, *neighbours})
     in_sample = set(sampled)
     chosen: list[ChosenFrame] = []
     for source in search:
-        role: Role = "annotated" if source not in in_sample else "both" if source in wanted else "sampled"
+        role: Role = "both" if source in wanted else "sampled"
+        if source not in in_sample:
+            role = "neighbour" if source in neighbours else "annotated"
         chosen.append(ChosenFrame(len(chosen), source, role))
     for source in sorted(set(extra).difference(taken)):
         chosen.append(ChosenFrame(len(chosen), source, "added"))
     return chosen
+
+
+def _missing_neighbours(chosen: Collection[int], centers: Collection[int], interval: Interval, reach: int) -> list[int]:
+    """Frames at `reach` from the centers, on the sides where no chosen or already missing frame is nearer."""
+    have, missing = sorted(chosen), set[int]()
+    for center in sorted(centers) if reach else []:
+        for side in (-reach, reach):
+            low, high = min(center, center + side), max(center, center + side)
+            found = have[bisect_left(have, low) : bisect_right(have, high)]
+            near = any(frame != center for frame in found) or any(low <= frame <= high for frame in missing)
+            if not near and interval.first <= center + side <= interval.last:
+                missing.add(center + side)
+    return sorted(missing)
 
 
 def _spread(items: Sequence[int], count: int) -> list[int]:

@@ -135,7 +135,7 @@ def accept(session: Session, task: Task, result: Result, now: datetime, *, reuse
     task.lease_owner, task.lease_expires_at, task.ended_at = None, None, now
     rows = dict(result.rows)
     rows["metrics"] = [{**row, "name": f"{task.key}.{row['name']}"} for row in rows.get("metrics", ())]
-    rows["cases"] = [{"seconds": result.seconds, "selected": 0, **row} for row in rows.get("cases", ())]
+    rows["cases"] = [{"seconds": result.seconds, "selected": 0, "vetoed": 0, **row} for row in rows.get("cases", ())]
     write_rows(session, task.inspection_id, task.key, rows)
 
 

@@ -212,6 +212,7 @@ class CaseRow(_Row, Base):
     seconds: Mapped[float]
     start_mode: Mapped[str | None] = mapped_column(String(16))
     selected: Mapped[int] = mapped_column(default=0)
+    vetoed: Mapped[int] = mapped_column(default=0)
 
 
 class DetectionRow(_Row, Base):

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from bench.service.interrupted import interrupted
 from bench.service.load import load
-from bench.service.overhead import overhead, scaling
+from bench.service.overhead import overhead
+from bench.service.scaling import scaling
 from bench.service.transfers import downloads, uploads
 from bench.speed.timing import Table
 from core.errors import BadInput

@@ -1,4 +1,4 @@
-"""What the service costs beside the stages, and what a second worker brings; both read from the plan's own rows."""
+"""What the service costs beside the stages, read from the plan's own rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 import httpx
 from sqlalchemy import select
 
-from bench.service.deployment import curl, serving
+from bench.service.deployment import Server, curl, serving
 from bench.speed.timing import Row, Table
 from core.errors import StageFailed
 from store.db import Database, open_sqlite
@@ -22,20 +22,6 @@ from store.models import ACTIVE_INSPECTION as ACTIVE
 from store.models import Attempt
 
 SAMPLES = Path("samples")
-SEARCH = ("coarse/", "refine/")
-MANY_WINDOWS = {
-    "camera.fov_deg": 85.0,
-    "windows.mode": "search",
-    "windows.coarse_length": 40,
-    "windows.coarse_step": 5,
-    "windows.refine_length": 48,
-    "windows.refine_margin": 24,
-    "windows.refine_min": 32,
-    "windows.refine_step": 5,
-    "windows.anchor_step": 15,
-    "dense.views": 8,
-}
-"""The sample is shorter than one window of the presets; these cut it into about twenty, a third from scratch."""
 Interval = tuple[datetime, datetime]
 
 
@@ -45,7 +31,7 @@ def overhead(folder: Path, repeat: int, preset: str) -> Table:
     for number in range(repeat):
         with _finished(folder / f"overhead-{number}", preset, {}, workers=2) as (database, wall):
             walls.append(wall)
-            inside.append(covered(_attempts(database, ("",))))
+            inside.append(covered(attempts(database, ("",))))
     shares = [1.0 - stages / wall for stages, wall in zip(inside, walls, strict=True)]
     return Table(
         "overhead",
@@ -54,25 +40,6 @@ def overhead(folder: Path, repeat: int, preset: str) -> Table:
             Row("job, from accepted to published", median(walls), "s"),
             Row("of it no task was running", median(w - i for w, i in zip(walls, inside, strict=True)), "s"),
             Row("overhead", median(shares) * 100, "%", "under 5"),
-        ),
-    )
-
-
-def scaling(folder: Path, repeat: int, preset: str) -> Table:
-    """The window search with one worker and with two, in turn."""
-    spans: dict[int, list[float]] = {1: [], 2: []}
-    for number in range(repeat):
-        for workers in spans:
-            name = f"scaling-{number}-{workers}"
-            with _finished(folder / name, preset, MANY_WINDOWS, workers=workers) as (database, _):
-                spans[workers].append(covered(_attempts(database, SEARCH)))
-    return Table(
-        "scaling",
-        f"twenty windows over the sample, preset {preset}, one thread each, median of {repeat}",
-        (
-            Row("one worker", median(spans[1]), "s"),
-            Row("two workers", median(spans[2]), "s"),
-            Row("ratio", median(spans[1]) / median(spans[2]), "x", "at least 1.8"),
         ),
     )
 
@@ -87,7 +54,7 @@ def covered(intervals: Iterable[Interval]) -> float:
     return total
 
 
-def _attempts(database: Database, stages: tuple[str, ...]) -> list[Interval]:
+def attempts(database: Database, stages: tuple[str, ...]) -> list[Interval]:
     """When stages themselves were running: not the start of their processes, not what is done with their files."""
     with database.read() as session:
         rows = session.scalars(select(Attempt).where(Attempt.outcome == "succeeded")).all()
@@ -98,6 +65,15 @@ def _attempts(database: Database, stages: tuple[str, ...]) -> list[Interval]:
     ]
 
 
+def submitted(server: Server, preset: str, options: Mapping[str, Any]) -> str:
+    """Upload the sample; the address of its inspection."""
+    form = {"video": "turbine.mp4", "annotations": "turbine.json"}
+    files = [word for name, file in form.items() for word in ("-F", f"{name}=@{SAMPLES / file}")]
+    parameters = json.dumps({"preset": preset, "options": dict(options)})
+    made = curl(*files, "-F", f"parameters={parameters}", f"{server.url}/v1/inspections")
+    return f"{server.url}/v1/inspections/{json.loads(made)['id']}"
+
+
 @contextmanager
 def _finished(
     folder: Path, preset: str, options: Mapping[str, Any], *, workers: int
@@ -105,12 +81,8 @@ def _finished(
     """A server of its own after one job of the sample: its database, and the job's wall seconds."""
     data = folder / "data"
     with serving(data, {"BLADEATLAS_WORKERS": str(workers)}) as server:
-        form = {"video": "turbine.mp4", "annotations": "turbine.json"}
-        files = [word for name, file in form.items() for word in ("-F", f"{name}=@{SAMPLES / file}")]
         began = time.perf_counter()
-        parameters = json.dumps({"preset": preset, "options": dict(options)})
-        made = curl(*files, "-F", f"parameters={parameters}", f"{server.url}/v1/inspections")
-        link = f"{server.url}/v1/inspections/{json.loads(made)['id']}"
+        link = submitted(server, preset, options)
         while (found := httpx.get(link, params={"wait": 30}, timeout=60).raise_for_status().json())["state"] in ACTIVE:
             pass
         wall = time.perf_counter() - began

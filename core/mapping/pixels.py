@@ -60,9 +60,9 @@ def footprint(
     step = side / counts
     xy = low + (cell + 0.5) * step
     inside = _in_ellipse(xy, low, high) if polygon is None else in_polygon(xy, polygon)
-    if not inside.any():  # a sliver of a mask, thinner than the grid
-        inside = np.linalg.norm(xy - (low + high) / 2, axis=1) <= step.max()
     xy, cell = xy[inside], cell[inside]
+    if polygon is not None and len(xy) < MIN_CELLS:  # a sliver of a mask, thinner than the grid
+        xy, cell = _along_outline(polygon, low, step, counts)
     on_frame = (xy > 0).all(axis=1) & (xy[:, 0] < width) & (xy[:, 1] < height)
     return Footprint(xy[on_frame], cell[on_frame], float(step.max()), len(xy), "box" if polygon is None else "mask")
 
@@ -71,6 +71,19 @@ def _in_ellipse(xy: F64, low: F64, high: F64) -> NDArray[np.bool_]:
     scaled = (xy - (low + high) / 2) / (SHRINK * (high - low) / 2)
     inside: NDArray[np.bool_] = (scaled**2).sum(axis=1) <= 1.0
     return inside
+
+
+def _along_outline(polygon: F64, low: F64, step: F64, counts: Sequence[int]) -> tuple[F64, I64]:
+    """One point of the outline in each grid cell that it passes through, and the cells."""
+    ends = np.roll(polygon, -1, axis=0)
+    points = []
+    for start, end in zip(polygon, ends, strict=True):
+        n = 2 * ceil(float((np.abs(end - start) / step).max())) + 1
+        points.append(start + (end - start) * (np.arange(n)[:, None] + 0.5) / n)
+    xy = np.concatenate(points)
+    cell = np.clip(np.floor((xy - low) / step), 0, np.array(counts) - 1).astype(np.int64)
+    _, first = np.unique(cell, axis=0, return_index=True)
+    return xy[first], cell[first]
 
 
 def in_polygon(xy: F64, polygon: F64) -> NDArray[np.bool_]:

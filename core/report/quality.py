@@ -8,7 +8,8 @@ from typing import Any, Literal
 from core.checks.parallax import cases_parallax
 from core.flags import Flag
 from core.report.funnel import funnel, losses, support_counts
-from core.report.record import RunRecord
+from core.report.record import RunRecord, TaskRecord
+from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
 from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
@@ -29,10 +30,19 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     if still is not None:
         flags.append(still)
     for task in record.tasks:
-        for row in [*task.facts.get("flags", ()), *task.facts.get("checks", ())]:
+        for row in [*task.facts.get("flags", ()), *_checks_that_count(record, task)]:
             flags.append(Flag.from_dict(row))
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
     return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
+
+
+def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[Row]:
+    """Of the cases, the checks of the chosen one speak for the run, and only where no final model was made of it."""
+    is_case = task.stage in ("coarse", "refine")
+    if is_case and (record.facts("extend") or task.key.split("/", 1)[1] != selected_case(record)):
+        return ()
+    checks: Sequence[Row] = task.facts.get("checks", ())
+    return checks
 
 
 def _settings_flags(record: RunRecord) -> list[Flag]:
@@ -65,6 +75,7 @@ def build_quality(
         "state": record.state,
         "reason": record.reason or None,
         "flags": [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags],
+        "checks": list(record.facts("extend").get("checks", ())),
         "notes": _notes(record),
         "funnel": steps,
         "lost": losses(detections),
@@ -78,7 +89,7 @@ def build_quality(
             "refined": spread(cases, "refine"),
             "gain": refinement_gain(cases),
             "weak": weak_cases(cases),
-            "losers": _losers(cases),
+            "losers": _losers(record, cases),
         },
         "tables": {
             "3.2": table_3_2(record),
@@ -143,10 +154,25 @@ def _surface(record: RunRecord) -> dict[str, Any]:
     return {name: facts.get(name) for name in names}
 
 
-def _losers(cases: Sequence[Row]) -> list[dict[str, Any]]:
-    """The cases that were not selected, best first."""
+def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
+    """The cases that were not selected, best first, each with why it lost."""
+    checks = {task.key.split("/", 1)[1]: task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
     order = sorted(
         (row for row in cases if not row["selected"]),
-        key=lambda row: (-int(row["registered_images"] or 0), -int(row["points3D"] or 0), row["name"]),
+        key=lambda row: (
+            bool(row["vetoed"]),
+            -int(row["registered_images"] or 0),
+            -int(row["points3D"] or 0),
+            row["name"],
+        ),
     )
-    return [{name: row[name] for name in ("name", "status", "registered_images", "points3D")} for row in order]
+    names = ("name", "status", "registered_images", "points3D")
+    return [{**{name: row[name] for name in names}, "why": _why_lost(row, checks[row["name"]])} for row in order]
+
+
+def _why_lost(row: Row, checks: Sequence[Row]) -> str:
+    if row["status"] != "succeeded":
+        return str(row["reason"] or row["status"])
+    if row["vetoed"]:
+        return "vetoed: " + ", ".join(sorted({check["code"] for check in checks if check["severity"] == "error"}))
+    return "score"

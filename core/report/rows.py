@@ -26,6 +26,7 @@ CASE_COLUMNS = (
     "seconds",
     "start_mode",
     "selected",
+    "vetoed",
 )
 
 
@@ -67,6 +68,7 @@ def _case_row(task: TaskRecord, chosen: str) -> Row:
     else:
         row.update({column: task.facts[column] for column in CASE_COLUMNS if column in task.facts})
         row["reason"] = row["reason"] or None
+    row["vetoed"] = int(bool(row["vetoed"]))
     row["seconds"] = round(task.seconds, 3)
     row["selected"] = int(name == chosen)
     return row

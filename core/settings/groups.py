@@ -30,6 +30,13 @@ class FrameSettings(Group):
     max_count: int = option(
         600, "sampled and annotated frames of the search together, at most", unit="frames", source="time budget", ge=2
     )
+    neighbour_s: float = option(
+        0.5,
+        "an annotated frame gets a neighbour on each side within this time, as far as max_count goes; 0 adds none",
+        unit="s",
+        source="coverage",
+        ge=0,
+    )
     time_rule: Literal["pts", "average_rate"] = option(
         "pts", "frame of a clip time: nearest presentation time, or time x average rate", source="exact times"
     )
@@ -99,6 +106,9 @@ class MatchSettings(Group):
     )
     window: int = option(
         5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1
+    )
+    bridge: bool = option(
+        True, "seek pairs beyond the window where the sequence is thin: a dark stretch, a jump", source="method"
     )
     ratio: float = option(
         1.0, "mutual nearest: distance ratio first / second must be below; 1 = no test", source="measured", gt=0, le=1
@@ -175,6 +185,9 @@ class MapperSettings(Group):
 class ModelSettings(Group):
     """From the winning case to the final model."""
 
+    veto: bool = option(
+        True, "a model that a check calls wrong cannot win; all such = no reconstruction", source="checks; thesis off"
+    )
     confirm: bool = option(
         True, "map the winner again from scratch with COLMAP's bundle adjustment", source="decision 6"
     )

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
+import numpy as np
 import pycolmap
 
+from core.checks.model import check_model
+from core.flags import Flag, worst
 from core.sparse.cases import Case, CaseResult, run_case
 from core.stage import StageResult, StageTask
 
@@ -29,7 +33,7 @@ def run_case_task(task: StageTask, kind: str) -> StageResult:
         folder = task.out / "model"
         folder.mkdir()
         result.model.write_binary(folder)
-    return StageResult(_row(task, kind, result))
+    return StageResult({**_row(task, kind, result), **trust_facts(case_checks(result, case))})
 
 
 def _start_model(task: StageTask) -> Any | None:
@@ -39,6 +43,19 @@ def _start_model(task: StageTask) -> Any | None:
     if folder is None or not (folder / "model").is_dir():
         return None
     return pycolmap.Reconstruction(folder / "model")
+
+
+def case_checks(result: CaseResult, case: Case) -> list[Flag]:
+    """What speaks against the model of a case, by the same checks as for the final model; none without a model."""
+    if result.model is None:
+        return []
+    with np.load(case.graph / "graph.npz") as arrays:
+        return check_model(result.model, result.stats, dict(arrays), result.frames)
+
+
+def trust_facts(flags: list[Flag]) -> dict[str, Any]:
+    """Facts `checks` and `vetoed`: a finding of severity `error` vetoes a case."""
+    return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == "error")}
 
 
 def _row(task: StageTask, kind: str, result: CaseResult) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -39,9 +40,13 @@ def choose(searched: ModelStats, confirmed: ModelStats | None) -> Kept:
     return "searched" if weaker else "confirmed"
 
 
-def confirmed_or_searched(case: Case, searched: Any, progress: Progress | None = None) -> tuple[Any, Kept]:
-    """The model to go on with and which one it is."""
+def confirmed_or_searched(
+    case: Case, searched: Any, progress: Progress | None = None, is_wrong: Callable[[Any], bool] | None = None
+) -> tuple[Any, Kept]:
+    """The model to go on with and which one it is; a confirmed model that `is_wrong` vetoes is not gone on with."""
     confirmed = confirm(case, progress)
     if confirmed is None or choose(model_stats(searched), model_stats(confirmed)) == "searched":
+        return searched, "searched"
+    if is_wrong is not None and is_wrong(confirmed):
         return searched, "searched"
     return confirmed, "confirmed"

@@ -1,4 +1,8 @@
-"""The reducer's rule: which case wins (thesis 3.3.3), and why there may be none."""
+"""The reducer's rule: which case wins, and why there may be none.
+
+Trust comes first: a case that a check vetoed loses against any that none did. Then the thesis's score (3.3.3)
+decides. Verified detections would stand between the two; they are known only after mapping, behind the search.
+"""
 
 from __future__ import annotations
 
@@ -18,29 +22,48 @@ def score(row: Row) -> tuple[int, int]:
     return int(row["registered_images"]), int(row["points3D"])
 
 
-def rank(rows: Sequence[Row]) -> list[Row]:
-    """Cases that have a model, best first; equal scores keep the order of their names."""
+Standing = tuple[bool, tuple[int, int]]
+
+
+def standing(row: Row, veto: bool = True) -> Standing:
+    """What cases are ranked by: not vetoed before vetoed, then `score`. Without `veto` the score alone."""
+    return not (veto and row.get("vetoed", False)), score(row)
+
+
+def rank(rows: Sequence[Row], veto: bool = True) -> list[Row]:
+    """Cases that have a model, best first; equal ones keep the order of their names."""
     with_model = [row for row in rows if row["status"] == "succeeded"]
-    return sorted(sorted(with_model, key=lambda row: str(row["name"])), key=score, reverse=True)
+    by_name = sorted(with_model, key=lambda row: str(row["name"]))
+    return sorted(by_name, key=lambda row: standing(row, veto), reverse=True)
 
 
-def reduce_cases(rows: Sequence[Row]) -> dict[str, Any]:
+def reduce_cases(rows: Sequence[Row], veto: bool = True) -> dict[str, Any]:
     """Facts of the reducer over the cases that ended.
 
+    A vetoed case can win here when all are: refinement may still find a model to trust around it.
     Raises `NoReconstruction` with the reasons counted when no case has a model.
     """
-    ranking = rank(rows)
+    ranking = rank(rows, veto)
     if not ranking:
         raise NoReconstruction(f"no case has a model: {_reasons(rows)}", where="search")
     return _facts(ranking[0], ranking)
 
 
-def reduce_refined(coarse_best: Row, refined: Sequence[Row]) -> dict[str, Any]:
-    """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better."""
-    ranking = rank(refined)
-    winner = ranking[0] if ranking and score(ranking[0]) > score(coarse_best) else coarse_best
+def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) -> dict[str, Any]:
+    """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
+
+    Raises `NoReconstruction` when the winner is vetoed, which with `veto` means that every candidate is.
+    """
+    ranking = rank(refined, veto)
+    better = ranking and standing(ranking[0], veto) > standing(coarse_best, veto)
+    winner = ranking[0] if better else coarse_best
     others = [row for row in (*ranking, coarse_best) if row["name"] != winner["name"]]
-    return _facts(winner, [winner, *sorted(others, key=score, reverse=True)])
+    if not standing(winner, veto)[0]:
+        codes = ", ".join(sorted({check["code"] for check in winner["checks"] if check["severity"] == "error"}))
+        raise NoReconstruction(
+            f"every model was vetoed by the checks; the largest, {winner['name']}: {codes}", where="search"
+        )
+    return _facts(winner, [winner, *sorted(others, key=lambda row: standing(row, veto), reverse=True)])
 
 
 def case_rows(facts: Mapping[str, Mapping[str, Any]], stage: str) -> list[Row]:

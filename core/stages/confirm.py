@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
 import pycolmap
 
+from core.checks.model import check_model
+from core.flags import worst
 from core.sparse.cases import Case
 from core.sparse.confirm import confirmed_or_searched
 from core.sparse.mapper import model_stats
 from core.stage import StageResult, StageTask
+
+
+def _veto(case: Case) -> Callable[[Any], bool]:
+    with np.load(case.graph / "graph.npz") as arrays:
+        graph = dict(arrays)
+    return lambda model: worst(check_model(model, model_stats(model), graph, case.end - case.start)) == "error"
 
 
 def run(task: StageTask) -> StageResult:
@@ -20,7 +32,10 @@ def run(task: StageTask) -> StageResult:
             task.input("graph"), int(winner["start"]), int(winner["end"]), task.settings.mapper, task.settings.seed
         )
         model, kept = confirmed_or_searched(
-            case, model, lambda registered, offered: task.report(registered, offered, f"{registered} of {offered}")
+            case,
+            model,
+            lambda registered, offered: task.report(registered, offered, f"{registered} of {offered}"),
+            is_wrong=_veto(case) if task.settings.model.veto else None,
         )
     folder = task.out / "model"
     folder.mkdir()

@@ -9,6 +9,7 @@ import numpy as np
 import pycolmap
 
 from core.checks.model import check_model
+from core.flags import worst
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.mapper import mapper_options, model_stats, open_cache
@@ -20,8 +21,10 @@ def run(task: StageTask) -> StageResult:
     graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
     settings = task.settings.model
     model = pycolmap.Reconstruction(task.input("confirm") / "model")
+    with np.load(graph / "graph.npz") as arrays:
+        pairs = dict(arrays)
     if settings.register_rest:
-        model = register_rest(
+        grown = register_rest(
             graph,
             model,
             n_frames,
@@ -29,6 +32,8 @@ def run(task: StageTask) -> StageResult:
             seed=task.settings.seed,
             progress=lambda registered, offered: task.report(0.5 * registered, offered, f"{registered} registered"),
         )
+        if not (settings.veto and _is_wrong(grown, pairs, n_frames) and not _is_wrong(model, pairs, n_frames)):
+            model = grown
     adjustment = None
     if settings.final_adjustment:
         adjustment = _adjust(task, model)
@@ -38,8 +43,11 @@ def run(task: StageTask) -> StageResult:
     model.write_binary(folder)
     indices = [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())]
     (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
-    with np.load(graph / "graph.npz") as arrays:
-        return StageResult(_facts(model, adjustment, dict(arrays), n_frames))
+    return StageResult(_facts(model, adjustment, pairs, n_frames))
+
+
+def _is_wrong(model: Any, pairs: dict[str, Any], n_frames: int) -> bool:
+    return worst(check_model(model, model_stats(model), pairs, n_frames)) == "error"
 
 
 def _adjust(task: StageTask, model: Any) -> Adjustment:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import numpy as np
 
@@ -24,7 +25,8 @@ def run(task: StageTask) -> StageResult:
     crop = crop_of(settings.roi, table.info.width, table.info.height)
     interval = clip_interval(table, settings.frames, settings.overrides)
     annotated = {d.source_index for d in detections if d.source_index is not None}
-    chosen = choose_frames(interval, annotated, settings.frames)
+    reach = round(Fraction(settings.frames.neighbour_s) * table.info.average_rate)
+    chosen = choose_frames(interval, annotated, settings.frames, reach)
     until = max(frame.source_index for frame in chosen) + 1
 
     images = task.out / "images"

@@ -1,4 +1,4 @@
-"""Stage `graph`: the chunks of matches joined to one view graph, as arrays and as COLMAP's database."""
+"""Stage `graph`: all matches, those over gaps too, joined to one view graph, as arrays and as COLMAP's database."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from core.viewgraph import graph_facts, join_tables, read_table, write_database,
 
 def run(task: StageTask) -> StageResult:
     """Write ``graph.npz`` and ``database.db`` over all frames."""
-    table = join_tables(read_table(folder / "pairs.npz") for _, folder in task.fan_in("matches"))
+    folders = [folder for _, folder in task.fan_in("matches")]
+    if "bridge" in task.inputs:
+        folders.append(task.input("bridge"))
+    table = join_tables(read_table(folder / "pairs.npz") for folder in folders)
     write_table(task.out / "graph.npz", table)
     task.report(0.2, 1, "writing the database")
     rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import torch
@@ -19,8 +20,16 @@ from core.viewgraph import make_table, table_facts, write_table
 def run(task: StageTask) -> StageResult:
     """Match and verify the pairs whose first frame lies in [start, end)."""
     torch.set_num_threads(task.threads)
-    settings = task.settings
     pairs = pairs_of_chunk(_all_pairs(task), int(task.args["start"]), int(task.args["end"]))
+    table = make_table(pairs, match_all(task, pairs))
+    write_table(task.out / "pairs.npz", table)
+    task.report(1, 1)
+    return StageResult(dict(table_facts(table)))
+
+
+def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[MatchedPair]:
+    """Outcomes of `pairs` in their order; features are read when first needed and let go after their last use."""
+    settings = task.settings
     camera = read_camera(task.input("camera") / "camera.json")
     verifier = Verifier(camera, settings.verification, settings.seed)
     matcher = PairMatcher(settings.matching, settings.features, verifier)
@@ -37,10 +46,7 @@ def run(task: StageTask) -> StageResult:
         for frame in pair:
             if last_use[frame] == row:
                 del loaded[frame]
-    table = make_table(pairs, matched)
-    write_table(task.out / "pairs.npz", table)
-    task.report(1, 1)
-    return StageResult(dict(table_facts(table)))
+    return matched
 
 
 def _all_pairs(task: StageTask) -> list[tuple[int, int]]:

@@ -10,4 +10,4 @@ def run(task: StageTask) -> StageResult:
     """Rank the coarse cases; `NoReconstruction` when none has a model."""
     rows = case_rows(task.facts, "coarse")
     task.report(1, 1, f"{len(rows)} cases ranked")
-    return StageResult(reduce_cases(rows))
+    return StageResult(reduce_cases(rows, task.settings.model.veto))

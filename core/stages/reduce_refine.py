@@ -15,7 +15,7 @@ def run(task: StageTask) -> StageResult:
     """
     best = find_row(case_rows(task.facts, "coarse"), str(task.facts["reduce_coarse"]["best"]))
     refined = case_rows(task.facts, "refine")
-    facts = reduce_refined(best, refined)
+    facts = reduce_refined(best, refined, task.settings.model.veto)
     shutil.copytree(task.input(f"{facts['kind']}/{facts['best']}") / "model", task.out / "model")
     task.report(1, 1, f"{len(refined)} refined cases ranked")
     return StageResult(facts)

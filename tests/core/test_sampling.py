@@ -140,3 +140,18 @@ def test_a_budget_below_the_sample_takes_no_annotated_frame_into_the_search():
     settings = make_settings("default", {"frames.count": 5, "frames.max_count": 3}).frames
     chosen = choose_frames(Interval(0, 8), {1, 3}, settings)
     assert [f.role for f in chosen] == ["sampled"] * 5 + ["added"] * 2
+
+
+def test_an_annotated_frame_far_from_the_samples_gets_neighbours_on_both_sides():
+    settings = make_settings("default", {"frames.count": 5}).frames
+    roles = {f.source_index: f.role for f in choose_frames(Interval(0, 400), {150, 165, 205, 398}, settings, reach=10)}
+    neighbours = {source for source, role in roles.items() if role == "neighbour"}
+    assert neighbours == {140, 160, 175, 215, 388}  # 165 has 160 and 205 has 200; 398 has 400 behind it
+
+
+def test_neighbours_come_after_the_annotated_frames_in_the_budget():
+    settings = make_settings("default", {"frames.count": 5, "frames.max_count": 8}).frames
+    chosen = choose_frames(Interval(0, 400), {150, 250}, settings, reach=10)
+    assert [frame.role for frame in chosen].count("annotated") == 2
+    assert [frame.role for frame in chosen].count("neighbour") == 1
+    assert not [f for f in choose_frames(Interval(0, 400), {150}, settings) if f.role == "neighbour"]

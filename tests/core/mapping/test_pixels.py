@@ -33,7 +33,11 @@ def test_a_mask_is_sampled_inside_only() -> None:
     assert (found.xy.sum(axis=1) < 50 + 1e-9).all()
     assert (found.xy > 10).all()
     sliver = [(10.0, 10.0), (60.0, 10.001), (60.0, 10.002)]
-    assert len(footprint((0.0, 0.0, 50.0, 50.0), 100, 100, sliver).xy)
+    along = footprint((0.0, 0.0, 50.0, 50.0), 100, 100, sliver)
+    assert len(along.xy) >= MIN_CELLS
+    assert np.ptp(along.xy[:, 0]) > 40
+    assert np.abs(along.xy[:, 1] - 10.001).max() < 0.01
+    assert len(np.unique(along.cell, axis=0)) == len(along.cell)
 
 
 def test_even_odd_rule() -> None:

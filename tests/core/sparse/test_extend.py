@@ -62,6 +62,14 @@ def test_a_model_that_is_too_good_for_its_window_is_not_replaced(graph):
     assert model is whole
 
 
+def test_a_confirmed_model_that_is_called_wrong_is_not_gone_on_with(graph, winner):
+    case = Case(graph, 4, 14, SETTINGS, 0)
+    assert confirmed_or_searched(case, winner)[1] == "confirmed"
+    model, kept = confirmed_or_searched(case, winner, is_wrong=lambda _: True)
+    assert kept == "searched"
+    assert model is winner
+
+
 def test_the_rest_of_the_frames_is_registered_on_both_sides(graph, winner, scene):
     model = register_rest(graph, winner, N_FRAMES, SETTINGS, seed=0)
     assert sorted(model.reg_image_ids()) == list(range(1, N_FRAMES + 1))

@@ -90,3 +90,27 @@ def test_the_stages_take_the_rows_from_the_facts(tmp_path: Path) -> None:
 def test_a_winner_without_its_row_is_a_broken_plan() -> None:
     with pytest.raises(StageFailed):
         reduce_refine.run(task({"reduce_coarse": {"best": "seg_001"}}))
+
+
+BENT = {"vetoed": True, "checks": [{"code": "bent_model", "severity": "error"}]}
+
+
+def test_a_vetoed_case_loses_against_any_other() -> None:
+    rows = [row("seg_000", 180, 90_000, **BENT), row("seg_001", 30, 5)]
+    facts = reduce_cases(rows)
+    assert [item["name"] for item in facts["ranking"]] == ["seg_001", "seg_000"]
+    assert reduce_refined(rows[0], [row("refine_000", 20, 4)])["best"] == "refine_000"
+    assert reduce_refined(rows[1], [row("refine_000", 220, 9, **BENT)])["best"] == "seg_001"
+
+
+def test_when_every_case_is_vetoed_there_is_no_reconstruction() -> None:
+    best = row("seg_000", 180, 9, **BENT)
+    assert reduce_cases([best])["best"] == "seg_000"  # refinement still gets its chance
+    with pytest.raises(NoReconstruction, match="seg_000: bent_model"):
+        reduce_refined(best, [row("refine_000", 170, 9, **BENT)])
+
+
+def test_without_the_veto_the_score_alone_counts() -> None:
+    rows = [row("seg_000", 180, 9, **BENT), row("seg_001", 30, 5)]
+    assert reduce_cases(rows, veto=False)["best"] == "seg_000"
+    assert reduce_refined(rows[0], [], veto=False)["best"] == "seg_000"

@@ -1,0 +1,177 @@
+"""Pairs beyond the sequence, sought where the view graph is thin: over a dark or blurred stretch, or a jump.
+
+What such a pair says is believed only together with others. Blades look alike, so one verified pair may join two
+different ones; pairs that join the same two pieces must agree on how these are turned to each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
+from scipy.spatial.transform import Rotation
+
+from core.viewgraph import PairTable
+
+I64 = NDArray[np.int64]
+Bool = NDArray[np.bool_]
+
+STRONG_INLIERS = 30
+"""A pair with this many inliers can register an image (COLMAP's least for an absolute pose)."""
+THIN_SHARE = 0.2
+"""Of the pairs tried across a place of the sequence; with fewer strong ones it is thin."""
+MIN_DEGREE = 2
+"""Strong pairs of a frame that is worth matching further: a black one has none."""
+SIDE = 6
+"""Frames on either side of a gap, each matched with each."""
+PIECE_FRAMES = 8
+"""Pieces of the graph with fewer frames are not sought out."""
+PIECE_SIDE = 5
+"""Frames spread over each of two pieces, each matched with each."""
+MAX_PIECES = 4
+MAX_PAIRS = 300
+AGREE_DEG = 4.0
+MIN_AGREEING = 3
+
+
+def is_strong(table: PairTable) -> Bool:
+    """(m,) which pairs can carry a model."""
+    strong: Bool = table.n_inliers >= STRONG_INLIERS
+    return strong
+
+
+def find_gaps(table: PairTable, n_search: int) -> list[tuple[int, int]]:
+    """Thin stretches of the sequence as (last frame before, first frame after).
+
+    Args:
+        table: all pairs tried along the sequence.
+        n_search: frames of the sequence; later ones are out of order and do not count.
+    """
+    tried, strong = np.zeros(n_search, np.int64), np.zeros(n_search, np.int64)
+    for (first, second), carries in zip(table.pairs.tolist(), is_strong(table).tolist(), strict=True):
+        if second < n_search:
+            tried[first:second] += 1
+            strong[first:second] += carries
+    thin = strong[: n_search - 1] < np.maximum(1.0, THIN_SHARE * tried[: n_search - 1])
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], thin.astype(np.int64), [0]])))
+    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def find_pieces(table: PairTable, n_frames: int) -> I64:
+    """(n_frames,) number of the piece that strong pairs join each frame into."""
+    first, second = table.pairs[is_strong(table)].T
+    links = coo_matrix((np.ones(len(first), np.int8), (first, second)), shape=(n_frames, n_frames))
+    labels: I64 = connected_components(links, directed=False)[1].astype(np.int64)
+    return labels
+
+
+def bridge_pairs(table: PairTable, n_search: int) -> list[tuple[int, int]]:
+    """Further pairs worth trying, sorted: across every gap, and between the large pieces; at most `MAX_PAIRS`."""
+    degree = np.bincount(table.pairs[is_strong(table)].ravel(), minlength=n_search)[:n_search]
+    usable = np.flatnonzero(degree >= MIN_DEGREE)
+    wanted: list[tuple[int, int]] = []
+    for before, after in find_gaps(table, n_search):
+        left, right = usable[usable <= before][-SIDE:], usable[usable >= after][:SIDE]
+        wanted += _by_distance([(int(a), int(b)) for a in left for b in right])
+    labels = find_pieces(table, n_search)
+    sizes = np.bincount(labels[usable], minlength=1)
+    large = [int(label) for label in np.argsort(-sizes, kind="stable") if sizes[label] >= PIECE_FRAMES][:MAX_PIECES]
+    spread = {label: _spread(usable[labels[usable] == label]) for label in large}
+    for row, one in enumerate(large):
+        for other in large[row + 1 :]:
+            wanted += [(min(a, b), max(a, b)) for a in spread[one] for b in spread[other]]
+    known = {(int(a), int(b)) for a, b in table.pairs}
+    return sorted(list(dict.fromkeys(pair for pair in wanted if pair not in known))[:MAX_PAIRS])
+
+
+def _by_distance(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    return sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair))
+
+
+def _spread(frames: I64) -> list[int]:
+    rows = np.linspace(0, len(frames) - 1, min(PIECE_SIDE, len(frames))).round().astype(int)
+    return [int(frames[row]) for row in np.unique(rows)]
+
+
+def agreeing(table: PairTable, extra: PairTable, n_frames: int) -> Bool:
+    """(m,) which pairs of `extra` to believe.
+
+    Those within one piece of `table` are. Between two pieces, the rotations measured along the sequence carry every
+    pair to one rotation between the pieces; the largest group that agrees on it is believed if it has
+    `MIN_AGREEING` pairs and is most of them.
+    """
+    labels = find_pieces(table, n_frames)
+    turned = _rotations(table, labels)
+    strong = is_strong(extra)
+    ends = labels[extra.pairs]
+    believed: Bool = strong & (ends[:, 0] == ends[:, 1])
+    across = strong & ~believed
+    joins = np.sort(ends, axis=1)
+    for join in np.unique(joins[across], axis=0):
+        rows = np.flatnonzero(across & (joins == join).all(axis=1))
+        group = _largest_group(_between_pieces(extra, rows, labels, turned))
+        if len(group) >= MIN_AGREEING and 2 * len(group) > len(rows):
+            believed[rows[group]] = True
+    return believed
+
+
+def _rotations(table: PairTable, labels: I64) -> list[Rotation]:
+    """Rotation of every frame against the first of its piece, chained over the pairs with most inliers."""
+    strong = np.flatnonzero(is_strong(table))
+    n = len(labels)
+    first, second = table.pairs[strong].T
+    cost = 1.0 / table.n_inliers[strong]
+    tree = minimum_spanning_tree(coo_matrix((cost, (first, second)), shape=(n, n)).tocsr())
+    measured = {
+        (int(a), int(b)): Rotation.from_quat(q)
+        for (a, b), q in zip(table.pairs[strong], table.rotation_xyzw[strong], strict=True)
+    }
+    found = [Rotation.identity()] * n
+    for label in np.unique(labels):
+        root = int(np.flatnonzero(labels == label)[0])
+        order, before = breadth_first_order(tree, root, directed=False)
+        for frame in order[1:]:
+            a, b = int(before[frame]), int(frame)
+            step = measured[a, b] if a < b else measured[b, a].inv()
+            found[b] = step * found[a]
+    return found
+
+
+def _between_pieces(extra: PairTable, rows: I64, labels: I64, turned: Sequence[Rotation]) -> list[Rotation]:
+    """What each pair says of how the piece with the higher label is turned against that with the lower."""
+    found = []
+    for row in rows:
+        first, second = (int(frame) for frame in extra.pairs[row])
+        low_to_high = turned[second].inv() * Rotation.from_quat(extra.rotation_xyzw[row]) * turned[first]
+        found.append(low_to_high if labels[first] < labels[second] else low_to_high.inv())
+    return found
+
+
+def _largest_group(rotations: Sequence[Rotation]) -> I64:
+    """Rows of the rotations within `AGREE_DEG` of the one that most are near to."""
+    near = [
+        np.flatnonzero([np.degrees((one.inv() * other).magnitude()) <= AGREE_DEG for other in rotations])
+        for one in rotations
+    ]
+    return max(near, key=len).astype(np.int64)
+
+
+def select(table: PairTable, keep: Bool) -> PairTable:
+    """The rows of `table` that `keep` names, without their inliers where it does not: the pair was tried in vain."""
+    counts = np.where(keep, table.n_inliers, 0)
+    rows = [np.arange(table.offsets[i], table.offsets[i] + counts[i]) for i in range(len(counts))]
+    inliers = table.inliers[np.concatenate([np.empty(0, np.int64), *rows])]
+    return PairTable(
+        table.pairs,
+        table.method,
+        table.n_matches,
+        table.config,
+        np.cumsum([0, *counts]).astype(np.int64),
+        inliers,
+        table.rotation_xyzw,
+        table.translation,
+        table.triangulation_angle_deg,
+    )

@@ -1,0 +1,41 @@
+"""The checks run for a case: its right model passes, measured rotations that it contradicts veto it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.settings import make_settings
+from core.sparse.case_stage import case_checks, trust_facts
+from core.sparse.cases import Case, run_case
+from core.viewgraph import read_table, write_table
+from tests.core.sparse.scene import make_scene, view_graph, write_graph
+
+
+def test_a_bent_model_is_vetoed_and_a_straight_one_is_not(tmp_path: Path) -> None:
+    scene = make_scene(16, 600)
+    case = Case(write_graph(tmp_path / "graph", scene, view_graph(scene)), 0, 16, make_settings().mapper, 0)
+    result = run_case(case)
+    assert not trust_facts(case_checks(result, case))["vetoed"]
+
+    # Turning the second half of the model by 7 degrees is the same as turning what was measured across the cut.
+    table = read_table(case.graph / "graph.npz")
+    across = (table.pairs[:, 0] < 8) & (table.pairs[:, 1] >= 8)
+    turned = table.rotation_xyzw.copy()
+    seam = Rotation.from_euler("z", 7, degrees=True)
+    turned[across] = (Rotation.from_quat(turned[across]) * seam).as_quat()
+    write_table(case.graph / "graph.npz", replace(table, rotation_xyzw=turned))
+    facts = trust_facts(case_checks(result, case))
+    assert facts["vetoed"]
+    bent = next(check for check in facts["checks"] if check["code"] == "bent_model")
+    np.testing.assert_allclose(bent["value"], 7, atol=1)
+    assert bent["where"] == "between frames 7 and 8"
+
+
+def test_without_a_model_nothing_is_vetoed(tmp_path: Path) -> None:
+    scene = make_scene(16, 600)
+    case = Case(write_graph(tmp_path / "graph", scene, view_graph(scene)), 0, 2, make_settings().mapper, 0)
+    assert trust_facts(case_checks(run_case(case), case)) == {"checks": [], "vetoed": False}

@@ -41,18 +41,29 @@ def make_path(scene: Scene) -> Path:
     rng = np.random.default_rng(scene.seed + 1)
     n = scene.n_frames
     if scene.still:
-        angle, wobble = np.full(n, 0.12), np.zeros((n, 6))
+        angle, wobble, sweep = np.full(n, 0.12), np.zeros((n, 6)), np.zeros((n, 3))
     else:
-        angle, wobble = _angles(scene, rng), _smooth(rng, n)
+        angle, wobble, sweep = _angles(scene, rng), _smooth(rng, n), _sweep(scene, rng)
     radius = HUB_MM + 0.55 * HEIGHT_MM
     base = np.array([radius, -0.35 * scene.distance_mm, -scene.distance_mm])
     target = np.array([radius, 0.12 * scene.distance_mm, 0.0])
     poses = np.tile(np.eye(4), (n, 1, 1))
     for i in range(n):
-        center = base + scene.wobble_mm * wobble[i, :3]
+        center = base + sweep[i] + scene.wobble_mm * wobble[i, :3]
         poses[i, :3, :3] = _looking(target - base) @ Rotation.from_rotvec(0.008 * wobble[i, 3:]).as_matrix()
         poses[i, :3, 3] = center
     return Path(angle, poses)
+
+
+def _sweep(scene: Scene, rng: np.random.Generator) -> F64:
+    """(n, 3) the probe moved over the blades on purpose, twice along them and back while it nears them thrice.
+
+    Without it the camera's path is nearly a line, and a similarity fitted to its centres may turn about that line.
+    """
+    phase = np.linspace(0.0, 2.0 * np.pi, scene.n_frames) + rng.uniform(0.0, 2.0 * np.pi)
+    along, near = np.sin(2.0 * phase), 0.5 * np.sin(3.0 * phase)
+    found: F64 = scene.sweep_mm * np.stack([along, np.zeros_like(along), near], axis=1)
+    return found
 
 
 def _smooth(rng: np.random.Generator, n: int) -> F64:

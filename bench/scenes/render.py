@@ -25,7 +25,7 @@ LIGHTS_MM = np.array([[3.2, -0.5, -1.0], [-2.8, 1.2, -1.0]])
 OCTAVES = ((0.55, 0.30), (1.3, 0.26), (3.4, 0.20), (9.0, 0.14))
 """Size in mm and strength of the marks."""
 VOLUME = 64
-DARK = 0.003
+DARK = 0.0001
 """What is left of the light when the lamps are off."""
 LEAST_LIGHT = 0.15
 """The exposure follows the picture down to this much light."""

@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-VERSION = 3
+VERSION = 4
 """Of the renderer: another one makes other scenes of the same description."""
 
 
@@ -53,7 +53,9 @@ class Scene:
     """The rotor turns by this much over the clip."""
     distance_mm: float = 42.0
     wobble_mm: float = 2.2
-    """The probe strays by this much; with less, its path hardly fixes the similarity that results are aligned by."""
+    """The hand strays by this much."""
+    sweep_mm: float = 8.0
+    """It is moved along the blades to and fro by this much, and by half of it to them and away."""
     stall: Span | None = None
     """The rotor stands still."""
     reverse_at: int | None = None

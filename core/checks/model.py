@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.checks.extent import check_coverage, check_points, check_reprojection
+from core.checks.joins import check_joins, tracks_of
 from core.checks.lens import check_lens
-from core.checks.parallax import largest_angle_deg, model_parallax
+from core.checks.matches import check_matches, match_agreement
+from core.checks.parallax import check_planar, largest_angle_deg, model_parallax
 from core.checks.rotations import check_rotations, disagreement, measured_rotations
 from core.flags import Flag
 from core.sparse.mapper import ModelStats
@@ -18,7 +20,9 @@ from core.sparse.mapper import ModelStats
 SAMPLED_POINTS = 2000
 
 
-def check_model(model: Any, stats: ModelStats, graph: Mapping[str, NDArray[Any]], n_frames: int) -> list[Flag]:
+def check_model(
+    model: Any, stats: ModelStats, graph: Mapping[str, NDArray[Any]], n_frames: int, n_search: int | None = None
+) -> list[Flag]:
     """Flags of a model (`pycolmap.Reconstruction`, image_id = index + 1).
 
     Args:
@@ -26,6 +30,7 @@ def check_model(model: Any, stats: ModelStats, graph: Mapping[str, NDArray[Any]]
         stats: of the same model.
         graph: arrays of ``graph.npz``.
         n_frames: frames that took part.
+        n_search: frames from this index on are out of order; None = all are in order.
     """
     ids = sorted(model.reg_image_ids())
     frames = np.array([image_id - 1 for image_id in ids], np.int64)
@@ -34,6 +39,9 @@ def check_model(model: Any, stats: ModelStats, graph: Mapping[str, NDArray[Any]]
     camera = next(iter(model.cameras.values()))
     flags = [
         check_rotations(found),
+        check_planar(graph, frames),
+        check_joins(tracks_of(model), frames, int(frames.max(initial=-1)) + 1 if n_search is None else n_search),
+        *check_matches(match_agreement(model, graph)),
         model_parallax(point_angles_deg(model)),
         check_points(stats.points3D, stats.registered_images),
         check_coverage(stats.registered_images, n_frames),

@@ -17,6 +17,12 @@ MIN_MODEL_ANGLE_DEG = 1.8
 """COLMAP drops points below 1.5 degrees, so a median just above it means that little is left."""
 
 
+DEGENERATE_CONFIGS = (4, 5, 6)
+"""COLMAP's two-view configurations: planar, panoramic, one of the two."""
+MAX_PLANAR_SHARE = 0.95
+MIN_PLANAR_PAIRS = 10
+
+
 def cases_parallax(rows: Sequence[Mapping[str, Any]]) -> Flag | None:
     """Whether the search found no model because the views do not differ in place.
 
@@ -43,6 +49,25 @@ def model_parallax(angles_deg: NDArray[np.float64]) -> Flag | None:
     if median >= MIN_MODEL_ANGLE_DEG:
         return None
     return Flag("no_parallax", "error", median, MIN_MODEL_ANGLE_DEG, f"{len(angles_deg)} points")
+
+
+def check_planar(graph: Mapping[str, NDArray[Any]], frames: NDArray[np.int64]) -> Flag | None:
+    """`planar_start` when a plane or a turn explains nearly all pairs of a model's frames as well as a motion does.
+
+    The motion between two such images has two solutions and the lens hardly any hold; where the mapper starts, it
+    cannot choose well.
+
+    Args:
+        graph: arrays of ``graph.npz``.
+        frames: (n,) indices of the registered frames.
+    """
+    inside = np.isin(graph["pairs"], frames).all(axis=1) & (np.diff(graph["offsets"]) > 0)
+    if inside.sum() < MIN_PLANAR_PAIRS:
+        return None
+    share = float(np.isin(graph["config"][inside], DEGENERATE_CONFIGS).mean())
+    if share <= MAX_PLANAR_SHARE:
+        return None
+    return Flag("planar_start", "warning", share, MAX_PLANAR_SHARE, f"{int(inside.sum())} pairs")
 
 
 def largest_angle_deg(point: NDArray[np.float64], centers: NDArray[np.float64]) -> float:

@@ -19,6 +19,7 @@ from core.stage import Facts, StageResult, StageTask
 def run(task: StageTask) -> StageResult:
     """Write the final model, the list of its frames and what speaks against it."""
     graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
+    n_search = int(task.facts["frames"]["n_search"])
     settings = task.settings.model
     model = pycolmap.Reconstruction(task.input("confirm") / "model")
     with np.load(graph / "graph.npz") as arrays:
@@ -32,7 +33,11 @@ def run(task: StageTask) -> StageResult:
             seed=task.settings.seed,
             progress=lambda registered, offered: task.report(0.5 * registered, offered, f"{registered} registered"),
         )
-        if not (settings.veto and _is_wrong(grown, pairs, n_frames) and not _is_wrong(model, pairs, n_frames)):
+        if not (
+            settings.veto
+            and _is_wrong(grown, pairs, n_frames, n_search)
+            and not _is_wrong(model, pairs, n_frames, n_search)
+        ):
             model = grown
     adjustment = None
     if settings.final_adjustment:
@@ -43,11 +48,11 @@ def run(task: StageTask) -> StageResult:
     model.write_binary(folder)
     indices = [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())]
     (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
-    return StageResult(_facts(model, adjustment, pairs, n_frames))
+    return StageResult(_facts(model, adjustment, pairs, n_frames, n_search))
 
 
-def _is_wrong(model: Any, pairs: dict[str, Any], n_frames: int) -> bool:
-    return worst(check_model(model, model_stats(model), pairs, n_frames)) == "error"
+def _is_wrong(model: Any, pairs: dict[str, Any], n_frames: int, n_search: int) -> bool:
+    return worst(check_model(model, model_stats(model), pairs, n_frames, n_search)) == "error"
 
 
 def _adjust(task: StageTask, model: Any) -> Adjustment:
@@ -63,7 +68,7 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
     )
 
 
-def _facts(model: Any, adjustment: Adjustment | None, graph: dict[str, Any], n_frames: int) -> Facts:
+def _facts(model: Any, adjustment: Adjustment | None, graph: dict[str, Any], n_frames: int, n_search: int) -> Facts:
     stats = model_stats(model)
     params = np.array(next(iter(model.cameras.values())).params)
     return {
@@ -76,7 +81,7 @@ def _facts(model: Any, adjustment: Adjustment | None, graph: dict[str, Any], n_f
         "principal_point_px": params[PRINCIPAL_POINT].tolist(),
         "principal_point_refined": adjustment is not None and adjustment.principal_point.refined,
         "adjustment": None if adjustment is None else _adjustment_facts(adjustment),
-        "checks": [flag.to_dict() for flag in check_model(model, stats, graph, n_frames)],
+        "checks": [flag.to_dict() for flag in check_model(model, stats, graph, n_frames, n_search)],
     }
 
 

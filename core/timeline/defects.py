@@ -17,6 +17,7 @@ from core.mapping.surface_rules import Observation
 from core.outputs import evidence_name
 from core.timeline.events import EventRow, leading_label
 from core.timeline.instances import existence, fused_place, group_observations
+from core.timeline.merging import merge_alike
 from core.timeline.seen import views_of_place, visits
 from core.timeline.visibility import Sighting
 
@@ -67,7 +68,7 @@ def find_defects(observations: Sequence[Observation], scene: Scene, times_s: Map
         times_s: of its registered frames, by frame index.
     """
     looked = set(scene.views.frame_index[scene.frames.rows].tolist())
-    groups = group_observations(observations)
+    groups = merge_alike(group_observations(observations), observations, scene.views, scene.crop)
     candidates = [_defect(members, observations, scene, times_s, looked) for members in groups]
     recall = _recall(candidates)
     candidates = [replace(defect, exists=existence(defect.k, defect.n, recall)) for defect in candidates]

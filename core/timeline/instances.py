@@ -111,7 +111,7 @@ def _may_join(a: _Group, b: _Group, observations: Sequence[Observation]) -> bool
         return False
     for frame, members in smaller.frames.items():
         for other in larger.frames.get(frame, ()):
-            if any(_overlap(observations[m], observations[other]) < SAME_BOX_IOU for m in members):
+            if any(overlap(observations[m], observations[other]) < SAME_BOX_IOU for m in members):
                 return False
     return True
 
@@ -126,7 +126,7 @@ def _join(a: _Group, b: _Group) -> None:
         a.frames.setdefault(frame, []).extend(members)
 
 
-def _overlap(a: Observation, b: Observation) -> float:
+def overlap(a: Observation, b: Observation) -> float:
     """Intersection over union of the boxes of two rows."""
     width = min(a.row.box_x2, b.row.box_x2) - max(a.row.box_x1, b.row.box_x1)
     height = min(a.row.box_y2, b.row.box_y2) - max(a.row.box_y1, b.row.box_y1)

@@ -7,12 +7,12 @@ same call with the same facts gives the same list, so a plan can be rebuilt afte
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from core.settings import Settings
-from core.stage import Facts
+from core.stage import PIECE_MARK, Facts, stage_of
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
 
@@ -76,16 +76,21 @@ STAGES: dict[str, StageSpec] = {
         _spec("reduce_refine", "model.veto", version=2, weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=2, weight=6),
         _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=3, weight=16),
+        _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
         _spec("depth", "dense", "seed", fan_out=True, queue="gpu", weight=24),
         _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=21),
         _spec("fuse", "fusion", "dense", weight=3),
         _spec("mesh", "mesh", weight=2),
-        _spec("map_defects", "mapping", version=4, weight=0.6),
+        _spec("map_defects", "mapping", version=5, weight=0.6),
         _spec("timeline", "mapping", "timeline", version=3, weight=0.5),
         _spec("gallery", "gallery", "mapping.method", version=2, reads_video=True, weight=1),
     )
 }
+
+
+ALL_VIEWS = 1_000_000
+"""End of the one chunk of a further model, whose number of views the plan does not know yet."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,7 @@ class TaskSpec:
     @property
     def stage(self) -> str:
         """Name of the stage in `STAGES`."""
-        return self.key.split("/", 1)[0]
+        return stage_of(self.key)
 
 
 def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
@@ -171,11 +176,18 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     tasks.append(TaskSpec("reduce_refine", ("reduce_coarse", coarse_key, *refine_keys)))
     tasks.append(TaskSpec("confirm", ("frames", "graph", "reduce_refine")))
     tasks.append(TaskSpec("extend", ("frames", "graph", "confirm")))
+    if settings.model.further:
+        tasks.append(TaskSpec("pieces", ("frames", "graph", "extend")))
     tasks.append(TaskSpec("undistort", ("frames", "extend")))
     if "undistort" not in facts:
         return tasks
+    return tasks + _dense_and_mapping(settings, facts)
+
+
+def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
     step, n_views = settings.compute.chunk_views, int(facts["undistort"]["n_views"])
     chunks = [(start, min(start + step, n_views)) for start in range(0, n_views, step)]
+    tasks: list[TaskSpec] = []
     depth = [TaskSpec(f"depth/{i:03d}", ("undistort",), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
     depth_keys = tuple(task.key for task in depth)
     geometric = [
@@ -188,8 +200,44 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
     tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", "graph", "extend", *dense_keys)))
     tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "map_defects")))
-    tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", "timeline")))
+    if settings.model.further and "pieces" not in facts:
+        return tasks
+    n_pieces = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
+    timelines = ["timeline"]
+    for piece in range(1, n_pieces + 1):
+        tasks += _of_piece(piece, timelines)
+        timelines.append(f"timeline{PIECE_MARK}{piece}")
+    tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
+
+
+def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
+    """Everything from the final model on for a further model, one task per stage; failing ones are an outcome."""
+
+    def key(stage: str) -> str:
+        return f"{stage}{PIECE_MARK}{piece}"
+
+    depth, geometric = f"{key('depth')}/000", f"{key('geometric')}/000"
+    whole = {"piece": piece, "start": 0, "end": ALL_VIEWS}
+    one = {"piece": piece}
+    surface = (key("extend"), key("fuse"), key("mesh"))
+    return [
+        TaskSpec(key("extend"), ("frames", "graph", "pieces"), one, optional=True),
+        TaskSpec(key("undistort"), ("frames", key("extend")), one, optional=True),
+        TaskSpec(depth, (key("undistort"),), whole, optional=True),
+        TaskSpec(geometric, (key("undistort"), depth), whole, optional=True),
+        TaskSpec(key("fuse"), (key("undistort"), geometric), one, optional=True),
+        TaskSpec(key("mesh"), (key("fuse"),), one, optional=True),
+        TaskSpec(
+            key("map_defects"),
+            ("probe", "annotations", "frames", "graph", key("undistort"), geometric, *surface),
+            one,
+            optional=True,
+        ),
+        TaskSpec(
+            key("timeline"), ("annotations", "frames", *surface, key("map_defects"), *timelines), one, optional=True
+        ),
+    ]
 
 
 def _case_key(window: Window) -> str:

@@ -52,6 +52,13 @@ TABLES: tuple[str, ...] = (
 """Written for every run that ended, whatever it reached; summary.json last, so its presence says: complete."""
 
 
+OF_FURTHER_MODELS: tuple[Output, ...] = (
+    Output("sparse", (("extend", "model"),), folder=True),
+    *(output for output in OUTPUTS if output.path.startswith(("dense/", "mapping/"))),
+)
+"""Published below ``models/N/`` for every further model that came to its end."""
+
+
 def evidence_name(defect: int) -> str:
     """File of a defect's picture in the gallery."""
     return f"defect_{defect:03d}.jpg"

@@ -16,6 +16,13 @@ from core.errors import Cancelled, StageFailed
 from core.settings import Settings
 
 Facts = dict[str, Any]
+PIECE_MARK = "@"
+"""Between a task's key and the number of the further model that it works on: ``mesh@1``, ``depth@1/000``."""
+
+
+def stage_of(key: str) -> str:
+    """Name of the stage of a task."""
+    return key.split("/", 1)[0].split(PIECE_MARK, 1)[0]
 
 
 def _no_progress(fraction: float, message: str) -> None:
@@ -51,16 +58,26 @@ class StageTask:
             raise Cancelled("the task was cancelled", where=self.key)
         self.progress(min(1.0, done / total) if total else 1.0, message)
 
+    @property
+    def piece(self) -> int:
+        """Number of the model that it works on; 0 is the run's own."""
+        return int(self.args.get("piece", 0))
+
     def input(self, key: str) -> Path:
-        """Result folder of a dependency; `StageFailed` when it has none."""
-        try:
-            return self.inputs[key]
-        except KeyError:
-            raise StageFailed(f"task {self.key} needs the result of {key}", where=self.key) from None
+        """Result folder of a dependency, that of its own model first; `StageFailed` when it has none."""
+        for name in (f"{key}{PIECE_MARK}{self.piece}", key):
+            if name in self.inputs:
+                return self.inputs[name]
+        raise StageFailed(f"task {self.key} needs the result of {key}", where=self.key)
+
+    def has(self, key: str) -> bool:
+        """Whether it depends on `key`, of its own model."""
+        return (f"{key}{PIECE_MARK}{self.piece}" if self.piece else key) in self.inputs
 
     def fan_in(self, stage: str) -> list[tuple[str, Path]]:
         """(key, folder) of every finished task of a fanned-out stage, ordered by key."""
-        prefix = stage + "/"
+        mark = f"{PIECE_MARK}{self.piece}" if self.piece else ""
+        prefix = f"{stage}{mark}/"
         return sorted((key, path) for key, path in self.inputs.items() if key.startswith(prefix))
 
 

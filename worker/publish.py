@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from core.outputs import BEST_CASE, OUTPUTS, TABLES, Output, best_case
+from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case
 from core.report.build import Report, build_report, write_tables
-from core.report.load import load_tables
+from core.report.load import load_tables, served_pieces
 from core.report.record import RunRecord, RunState, TaskRecord, TaskState
 from core.settings import Settings
-from core.stage import Facts
+from core.stage import PIECE_MARK, Facts
 from core.versions import all_versions
 from store.records import InspectionView, TaskView
 from worker.results import MANIFEST, ResultFolders
@@ -121,20 +121,23 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
 
 def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:
     """(published path, file) of everything the table of outputs finds."""
-    for output in OUTPUTS:
-        source = _source(output, folders, facts)
+    wanted = [(output, "", "") for output in OUTPUTS]
+    for piece in served_pieces(folders):
+        wanted += [(output, f"models/{piece}/", f"{PIECE_MARK}{piece}") for output in OF_FURTHER_MODELS]
+    for output, below, mark in wanted:
+        source = _source(output, folders, facts, mark)
         if source is None or (output.needs_trust and not trusted):
             continue
         if not output.folder:
-            yield output.path, source
+            yield below + output.path, source
             continue
         for path in sorted(p for p in source.rglob("*") if p.is_file() and p.name != MANIFEST):
-            yield f"{output.path}/{path.relative_to(source).as_posix()}", path
+            yield f"{below}{output.path}/{path.relative_to(source).as_posix()}", path
 
 
-def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts]) -> Path | None:
+def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts], mark: str) -> Path | None:
     for key, inner in output.sources:
-        folder = folders.get(best_case(facts) if key == BEST_CASE else key)
+        folder = folders.get(best_case(facts) if key == BEST_CASE else key + mark)
         if folder is not None and (folder / inner).exists():
             return folder / inner
     return None

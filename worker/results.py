@@ -20,7 +20,7 @@ from typing import Any
 
 from core.errors import DiskFull
 from core.fingerprint import canonical_json, digest_of, digest_of_file
-from core.stage import Facts
+from core.stage import Facts, stage_of
 from store.disk import disk_is_full, sync_path
 
 MANIFEST = "result.json"
@@ -71,7 +71,7 @@ def seal(folder: Path, *, fingerprint: str, key: str, version: int, facts: Facts
     if disk_is_full(folder):
         raise DiskFull("no space left on the disk of the output folder", where=key)
     digest = digest_of({"facts": facts, "files": {name: entry["sha256"] for name, entry in files.items()}})
-    manifest = Manifest(fingerprint, key.split("/", 1)[0], version, facts, files, digest, seconds, rss, key)
+    manifest = Manifest(fingerprint, stage_of(key), version, facts, files, digest, seconds, rss, key)
     path = folder / MANIFEST
     path.write_text(json.dumps(manifest.__dict__, sort_keys=True, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     sync_path(path)

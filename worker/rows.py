@@ -16,8 +16,12 @@ _TABLE_FILES: dict[str, dict[str, str]] = {
 }
 
 
-def rows_of(stage: str, facts: Facts, folder: Path) -> dict[str, Any]:
-    """Rows by table: metrics of every stage, cases of the search, tables of the mapping stages."""
+def rows_of(key: str, facts: Facts, folder: Path) -> dict[str, Any]:
+    """Rows by table: metrics of every task, cases of the search, tables of the mapping stages.
+
+    Tables of further models are joined with the first one's when the run is published.
+    """
+    stage = key.split("/", 1)[0]
     rows: dict[str, Any] = {"metrics": _metrics(facts)}
     if stage in _CASE_STAGES and "name" in facts:
         rows["cases"] = [facts]

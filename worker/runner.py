@@ -203,5 +203,5 @@ def result_of(manifest: Manifest, results: ResultFolders, *, peak_rss_bytes: int
         path=path,
         seconds=manifest.seconds,
         peak_rss_bytes=peak_rss_bytes,
-        rows=rows_of(manifest.stage, manifest.facts, results.path(path)),
+        rows=rows_of(manifest.key, manifest.facts, results.path(path)),
     )

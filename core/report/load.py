@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
+from core.report.models import join_detections, join_lists
 from core.report.record import RunTables
 from core.report.tables import read_json
+from core.stage import PIECE_MARK
+
+
+def served_pieces(keys: Collection[str]) -> list[int]:
+    """Numbers of the further models that came to their end, by the keys of the finished tasks."""
+    if "timeline" not in keys:
+        return []
+    marked = (key.partition(PIECE_MARK) for key in keys)
+    return sorted(int(number) for stage, _, number in marked if stage == "timeline" and number)
 
 
 def load_tables(folders: Mapping[str, Path]) -> RunTables:
@@ -17,11 +27,15 @@ def load_tables(folders: Mapping[str, Path]) -> RunTables:
         path = folders[key] / name if key in folders else None
         return read_json(path) if path is not None and path.is_file() else default
 
+    further = served_pieces(folders)
+    timelines = ["timeline", *(f"timeline{PIECE_MARK}{piece}" for piece in further)]
+    mapped = table("timeline", "detections.json", table("map_defects", "detections.json", None))
     return RunTables(
         detections=table("annotations", "detections.json"),
         frames=table("frames", "frames.json"),
         registered=table("extend", "registered.json"),
-        mapped_rows=table("timeline", "detections.json", table("map_defects", "detections.json", None)),
-        timeline=table("timeline", "timeline.json"),
-        defects=table("timeline", "defects.json"),
+        registered_further={piece: table(f"extend{PIECE_MARK}{piece}", "registered.json") for piece in further},
+        mapped_rows=mapped if not further else join_detections([table(key, "detections.json") for key in timelines]),
+        timeline=join_lists([table(key, "timeline.json") for key in timelines]),
+        defects=join_lists([table(key, "defects.json") for key in timelines]),
     )

@@ -13,6 +13,7 @@ from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
 from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
+from core.stage import PIECE_MARK
 
 Row = Mapping[str, Any]
 Verdict = Literal["ok", "suspect", "refused"]
@@ -30,8 +31,9 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     if still is not None:
         flags.append(still)
     for task in record.tasks:
+        _, _, piece = task.key.partition(PIECE_MARK)
         for row in [*task.facts.get("flags", ()), *_checks_that_count(record, task)]:
-            flags.append(Flag.from_dict(row))
+            flags.append(Flag.from_dict({**row, "where": f"model {piece}, {row['where']}"} if piece else row))
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
     return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
 
@@ -82,6 +84,7 @@ def build_quality(
         "support": support,
         "time_convention": record.facts("annotations").get("time_convention"),
         "registration": _registration(record),
+        "models": _models(record),
         "reprojection_error": _reprojection(record),
         "surface": _surface(record),
         "search": {
@@ -134,6 +137,19 @@ def _registration(record: RunRecord) -> dict[str, Any]:
         "annotated_registered": len(annotated & seen),
         "share_of_annotated": _share(len(annotated & seen), len(annotated)),
     }
+
+
+def _models(record: RunRecord) -> list[dict[str, Any]]:
+    """The served models; the first is the run's own."""
+    rows = []
+    for number in (0, *sorted(record.tables.registered_further)):
+        mark = f"{PIECE_MARK}{number}" if number else ""
+        facts = record.facts(f"extend{mark}")
+        if facts:
+            names = ("registered_images", "points3D", "mean_reprojection_error_px")
+            own = sum(defect.get("model", 0) == number for defect in record.tables.defects)
+            rows.append({"model": number, **{name: facts.get(name) for name in names}, "defects": own})
+    return rows
 
 
 def _share(part: int, whole: int | None) -> float | None:

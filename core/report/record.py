@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from core.settings import Settings
-from core.stage import Facts
+from core.stage import Facts, stage_of
 
 RunState = Literal["succeeded", "partial", "failed", "cancelled", "interrupted"]
 TaskState = Literal["succeeded", "failed", "skipped", "cancelled", "waiting"]
@@ -31,7 +31,7 @@ class TaskRecord:
     @property
     def stage(self) -> str:
         """Name of its stage."""
-        return self.key.split("/", 1)[0]
+        return stage_of(self.key)
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,8 @@ class RunTables:
     """`frames`: frame table of the search."""
     registered: Sequence[int] = ()
     """`extend`: indices of the registered frames."""
+    registered_further: Mapping[int, Sequence[int]] = field(default_factory=dict)
+    """The same of further models, by number."""
     mapped_rows: Sequence[Mapping[str, Any]] | None = None
     """`timeline` (else `map_defects`): rows of the detections; None = mapping was not reached."""
     timeline: Sequence[Mapping[str, Any]] = ()

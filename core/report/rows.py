@@ -32,12 +32,14 @@ CASE_COLUMNS = (
 
 def frame_rows(record: RunRecord) -> list[Row]:
     """Rows of frames.csv; `model` is the model's number, None for a frame that is in none."""
-    registered = set(record.tables.registered)
+    model_of = dict.fromkeys(record.tables.registered, 0)
+    for number, indices in record.tables.registered_further.items():
+        model_of |= {index: number for index in indices if index not in model_of}
     rows = []
     for frame in record.tables.frames:
-        seen = int(frame["index"]) in registered
+        model = model_of.get(int(frame["index"]))
         row = {name: frame[name] for name in ("index", "source_index", "pts", "time_s", "sha256", "role")}
-        rows.append({**row, "registered": int(seen), "model": 0 if seen else None})
+        rows.append({**row, "registered": int(model is not None), "model": model})
     return rows
 
 

@@ -188,6 +188,14 @@ class ModelSettings(Group):
     veto: bool = option(
         True, "a model that a check calls wrong cannot win; all such = no reconstruction", source="checks; thesis off"
     )
+    further: int = option(
+        2,
+        "further models of frames that cannot be joined to the first, at most",
+        unit="models",
+        source="method",
+        ge=0,
+        le=8,
+    )
     confirm: bool = option(
         True, "map the winner again from scratch with COLMAP's bundle adjustment", source="decision 6"
     )

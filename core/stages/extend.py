@@ -1,4 +1,4 @@
-"""Stage `extend`: the rest of the frames, the final bundle adjustment, and the checks of the model."""
+"""Stage `extend` (`extend@N` of a further model): the other frames, the last bundle adjustment, the checks."""
 
 from __future__ import annotations
 
@@ -21,10 +21,13 @@ def run(task: StageTask) -> StageResult:
     graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
     n_search = int(task.facts["frames"]["n_search"])
     settings = task.settings.model
-    model = pycolmap.Reconstruction(task.input("confirm") / "model")
+    if task.piece:
+        model = pycolmap.Reconstruction(task.input("pieces") / str(task.piece) / "model")
+    else:
+        model = pycolmap.Reconstruction(task.input("confirm") / "model")
     with np.load(graph / "graph.npz") as arrays:
         pairs = dict(arrays)
-    if settings.register_rest:
+    if settings.register_rest and not task.piece:
         grown = register_rest(
             graph,
             model,
@@ -48,7 +51,9 @@ def run(task: StageTask) -> StageResult:
     model.write_binary(folder)
     indices = [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())]
     (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
-    return StageResult(_facts(model, adjustment, pairs, n_frames, n_search))
+    # Of a further model nobody asks how much of the video it covers.
+    offered = model.num_reg_images() if task.piece else n_frames
+    return StageResult(_facts(model, adjustment, pairs, offered, n_search))
 
 
 def _is_wrong(model: Any, pairs: dict[str, Any], n_frames: int, n_search: int) -> bool:

@@ -14,8 +14,9 @@ from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
 from core.mapping.rows import DetectionRow
 from core.render import Renderer
+from core.report.models import join_detections, join_lists
 from core.report.tables import read_json
-from core.stage import StageResult, StageTask
+from core.stage import StageResult, StageTask, stage_of
 from core.surface.ply import read_mesh
 from core.video.decode import VideoReader
 from core.viewpoint import choose_two
@@ -27,16 +28,17 @@ MIN_SUPPORT = 0.5
 def run(task: StageTask) -> StageResult:
     """Write the page, one picture per chosen frame and two renderings. Facts: n_images, n_frames."""
     settings = task.settings.gallery
-    rows = [DetectionRow(**row) for row in read_json(task.input("timeline") / "detections.json")]
+    timelines = [folder for key, folder in sorted(task.inputs.items()) if stage_of(key) == "timeline"]
+    rows = [DetectionRow(**row) for row in join_detections([read_json(f / "detections.json") for f in timelines])]
     source = {row["id"]: row["source_index"] for row in read_json(task.input("annotations") / "detections.json")}
     frames = group_by_frame(rows, source)
     chosen = choose_frames(frames, settings.max_frames)
     colors = label_colors([row.label for row in rows])
-    defects = read_json(task.input("timeline") / "defects.json")
+    defects = join_lists([read_json(folder / "defects.json") for folder in timelines])
     evidence = evidence_of(defects, rows) if task.settings.mapping.method == "surface" else []
     _write_frames(task, chosen, colors, evidence)
     _write_views(task)
-    events = read_json(task.input("timeline") / "timeline.json")
+    events = join_lists([read_json(folder / "timeline.json") for folder in timelines])
     page = gallery_page(chosen, len(frames), rows, events, colors, evidence)
     (task.out / "index.html").write_text(page, encoding="utf-8", newline="\n")
     return StageResult({"n_images": len(chosen), "n_frames": len(frames)})

@@ -21,7 +21,10 @@ from core.roi import Crop
 from core.stage import Facts, StageResult, StageTask
 from core.surface.ply import Mesh, read_mesh, write_cloud
 
-WORLD_COMMENTS = ("world frame of sparse model 0 (COLMAP)", "unit: model")
+
+def world_comments(task: StageTask) -> tuple[str, ...]:
+    """What the coordinates of a written surface are."""
+    return (f"world frame of sparse model {task.piece} (COLMAP)", "unit: model")
 
 
 def run(task: StageTask) -> StageResult:
@@ -66,7 +69,7 @@ def open_scene_of(task: StageTask) -> tuple[Scene, Times]:
     detections = [Detection.from_json(row) for row in read_json(annotations / "detections.json")]
     looked = read_json(annotations / "looked_at.json")
     depth = no_depth_maps()
-    if "undistort" in task.inputs:
+    if task.has("undistort"):
         depth = open_depth_maps(task.input("undistort"), [folder for _, folder in task.fan_in("geometric")])
     scene = open_mapping_scene(
         task.input("extend") / "model",
@@ -76,6 +79,7 @@ def open_scene_of(task: StageTask) -> tuple[Scene, Times]:
         boxes_by_frame(detections, looked, times.index_of_source, crop),
         depth,
         task.threads,
+        task.piece,
     )
     return scene, times
 
@@ -131,7 +135,7 @@ def _write_support_points(
     _, first = np.unique(point_ids, return_index=True)
     red = np.tile(np.array([[255, 0, 0]], np.uint8), (len(first), 1))
     cloud = Mesh(positions[first], colors=red, extra={"detection": owner[first].astype(np.int32)})
-    write_cloud(task.out / "defect_points.ply", cloud, WORLD_COMMENTS)
+    write_cloud(task.out / "defect_points.ply", cloud, world_comments(task))
     return len(first)
 
 

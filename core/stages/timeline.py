@@ -13,11 +13,12 @@ from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
 from core.report.tables import read_json, write_json
 from core.stage import StageResult, StageTask
-from core.stages.map_defects import WORLD_COMMENTS, open_scene_of
+from core.stages.map_defects import open_scene_of, world_comments
 from core.surface.glb import vertex_normals, write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.timeline.clusters import Cluster, cluster_detections, cluster_radius
 from core.timeline.events import defect_of_detection, defect_records, event_rows, with_defect_ids
+from core.timeline.numbering import Start
 from core.timeline.surface import F64, I32, defect_of_vertices, faces_of_defects, mean_normal, sample_points
 from core.timeline.visibility import Occlusion, Sighting, View, sightings, views_of_model
 
@@ -31,7 +32,7 @@ def run(task: StageTask) -> StageResult:
     mesh = read_mesh(task.input("mesh") / "mesh_poisson.ply")
     colored, facts = _by_surface(task, mesh) if by_surface else _by_clusters(task, mesh)
     task.report(3, 4, "writing the coloured surface")
-    write_mesh(task.out / "mesh_defects.ply", colored, WORLD_COMMENTS)
+    write_mesh(task.out / "mesh_defects.ply", colored, world_comments(task))
     write_glb(task.out / "mesh_defects.glb", colored)
     _write_cameras(task, views_of_model(open_model(task.input("extend") / "model")))
     task.report(4, 4, "timeline written")
@@ -53,11 +54,15 @@ def _by_surface(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
     task.report(2, 4, "colouring the surface")
     weight, vertex_defect = paint_defects(mesh, found, task.settings.mapping, task.threads)
     faces = [own.tolist() for own in faces_of_defects(mesh.faces, vertex_defect, len(found.defects))]
-    write_json(task.out / "timeline.json", [event.to_dict() for event in events])
-    write_json(task.out / "detections.json", [row.to_dict() for row in defects.final_rows(found)])
-    write_json(task.out / "defects.json", defects.defect_records(found, events, faces, scene.model))
+    start = Start.after(task.facts, task.piece)
+    records = defects.defect_records(found, events, faces, scene.model)
+    write_json(task.out / "timeline.json", [event.to_dict() for event in start.events(events)])
+    write_json(task.out / "detections.json", [row.to_dict() for row in start.rows(defects.final_rows(found))])
+    write_json(task.out / "defects.json", start.records(records))
     write_json(task.out / "confidence.json", parts_rows(found.observations))
-    colored = replace(mesh, colors=blend(mesh.colors, weight), extra={**mesh.extra, "defect_id": vertex_defect})
+    colored = replace(
+        mesh, colors=blend(mesh.colors, weight), extra={**mesh.extra, "defect_id": start.vertices(vertex_defect)}
+    )
     return colored, {
         "n_events": len(events),
         "n_defects": len(found.defects),

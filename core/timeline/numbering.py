@@ -1,0 +1,59 @@
+"""Ids over several models: those of a further model go on where the models before it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.rows import DetectionRow
+from core.outputs import evidence_name
+from core.stage import PIECE_MARK, Facts, stage_of
+from core.timeline.events import EventRow
+
+I32 = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Start:
+    """First free ids."""
+
+    defect: int = 0
+    event: int = 0
+
+    @classmethod
+    def after(cls, facts: Mapping[str, Facts], piece: int) -> Start:
+        """Behind the timelines of all models before `piece`, whose facts are given by task key."""
+        before = [
+            own
+            for key, own in facts.items()
+            if stage_of(key) == "timeline" and int(key.partition(PIECE_MARK)[2] or 0) < piece
+        ]
+        return cls(sum(int(own["n_defects"]) for own in before), sum(int(own["n_events"]) for own in before))
+
+    def rows(self, rows: Sequence[DetectionRow]) -> list[DetectionRow]:
+        """Detections."""
+        return [row if row.defect_id is None else replace(row, defect_id=row.defect_id + self.defect) for row in rows]
+
+    def events(self, rows: Sequence[EventRow]) -> list[EventRow]:
+        """Events."""
+        return [replace(row, event_id=row.event_id + self.event, defect_id=row.defect_id + self.defect) for row in rows]
+
+    def records(self, records: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """Records of ``defects.json``."""
+        return [
+            {
+                **record,
+                "id": record["id"] + self.defect,
+                "events": [event + self.event for event in record["events"]],
+                "evidence": f"gallery/{evidence_name(record['id'] + self.defect)}",
+            }
+            for record in records
+        ]
+
+    def vertices(self, defect: I32) -> I32:
+        """Defect of every vertex; -1 = none."""
+        return np.where(defect >= 0, defect + self.defect, defect).astype(np.int32)

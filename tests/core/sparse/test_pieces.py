@@ -1,0 +1,84 @@
+"""What the final model leaves over becomes a model of its own, if it is strong and not vetoed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.settings import make_settings
+from core.sparse.pieces import MIN_FRAMES, find_pieces, groups_of
+from core.viewgraph import PairTable
+from tests.core.sparse.scene import Scene, center_errors, make_scene, view_graph, write_graph
+
+N, CUT = 36, 20
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scene, PairTable, Path]:
+    """No pair across the cut."""
+    scene = make_scene(N, 900)
+    table = view_graph(scene)
+    across = (table.pairs[:, 0] < CUT) & (table.pairs[:, 1] >= CUT)
+    keep = np.flatnonzero(~across)
+    rows = np.concatenate([np.arange(table.offsets[i], table.offsets[i + 1]) for i in keep])
+    table = PairTable(
+        offsets=np.cumsum([0, *table.n_inliers[keep]]).astype(np.int64),
+        inliers=table.inliers[rows],
+        **{
+            name: getattr(table, name)[keep]
+            for name in (
+                "pairs",
+                "method",
+                "n_matches",
+                "config",
+                "rotation_xyzw",
+                "translation",
+                "triangulation_angle_deg",
+            )
+        },
+    )
+    return scene, table, write_graph(tmp_path_factory.mktemp("pieces") / "graph", scene, table)
+
+
+def pieces(graph: Path, table: PairTable, taken: range, *, limit: int = 2, wrong: bool = False) -> list[object]:
+    return find_pieces(
+        graph,
+        table,
+        set(taken),
+        N,
+        make_settings().mapper,
+        seed=0,
+        limit=limit,
+        is_wrong=lambda _: wrong,
+        progress=lambda done, total: None,
+    )
+
+
+def test_the_other_side_of_a_break_is_a_model_of_its_own(broken: tuple[Scene, PairTable, Path]) -> None:
+    scene, table, graph = broken
+    found = pieces(graph, table, range(CUT))
+    assert len(found) == 1
+    ids = sorted(found[0].reg_image_ids())  # type: ignore[attr-defined]
+    assert ids == list(range(CUT + 1, N + 1))
+    assert center_errors(found[0], scene).max() < 0.05
+
+
+def test_frames_of_an_earlier_model_stay_with_it(broken: tuple[Scene, PairTable, Path]) -> None:
+    _, table, graph = broken
+    found = pieces(graph, table, range(N - 2, N))
+    assert [len(list(model.reg_image_ids())) for model in found] == [CUT, N - 2 - CUT]  # type: ignore[attr-defined]
+    assert len(pieces(graph, table, range(N - 2, N), limit=1)) == 1
+
+
+def test_weak_and_vetoed_pieces_are_none(broken: tuple[Scene, PairTable, Path]) -> None:
+    _, table, graph = broken
+    assert pieces(graph, table, range(N - MIN_FRAMES + 1)) == []
+    assert pieces(graph, table, range(CUT), wrong=True) == []
+    assert pieces(graph, table, range(N)) == []
+    left = np.ones(N, bool)
+    assert [len(group) for group in groups_of(table, left)] == [CUT, N - CUT]
+    weak = replace(table, offsets=np.zeros_like(table.offsets))
+    assert groups_of(weak, left) == []

@@ -1,0 +1,80 @@
+"""The plan: every dependency is in it, further models come with their own chain, and nothing waits for the unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.errors import StageFailed
+from core.graph import STAGES, expand
+from core.settings import make_settings
+from core.stage import StageTask, stage_of
+
+FRAMES = {"frames": {"n_frames": 200, "n_search": 200}}
+SEARCHED = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
+DENSE = {**SEARCHED, "undistort": {"n_views": 90}}
+
+
+def keys(facts: Mapping[str, Any], preset: str = "default", **options: Any) -> list[str]:
+    tasks = expand(make_settings(preset, options), facts)
+    names = [task.key for task in tasks]
+    assert len(set(names)) == len(names)
+    for number, task in enumerate(tasks):
+        assert task.stage in STAGES
+        assert set(task.depends) <= set(names[:number]), task.key
+    return names
+
+
+@pytest.mark.parametrize("facts", [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 2}}])
+@pytest.mark.parametrize("preset", ["default", "draft", "thesis"])
+def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: str) -> None:
+    if "reduce_coarse" in facts and preset == "draft":  # its one window is the whole clip
+        facts = {**facts, "reduce_coarse": {"best": "seg_000_0000_0200", "start": 0, "end": 200}}
+    assert keys(facts, preset) == keys(facts, preset)
+
+
+def test_the_plan_only_grows() -> None:
+    known = [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
+    for before, after in pairwise(known):
+        assert set(keys(before)) <= set(keys(after))
+
+
+def test_the_gallery_waits_until_the_further_models_are_known() -> None:
+    assert "gallery" not in keys(DENSE)
+    assert "gallery" in keys(DENSE, **{"model.further": 0})
+    assert "gallery" in keys({**DENSE, "pieces": {"n_pieces": 0}})
+    tasks = {task.key: task for task in expand(make_settings(), {**DENSE, "pieces": {"n_pieces": 2}})}
+    assert {"timeline", "timeline@1", "timeline@2"} <= set(tasks["gallery"].depends)
+    assert tasks["timeline@2"].args == {"piece": 2}
+    assert {"timeline", "timeline@1"} <= set(tasks["timeline@2"].depends)
+    assert all(task.optional for key, task in tasks.items() if "@" in key)
+
+
+def test_a_task_of_a_further_model_reads_its_own_models_results_first(tmp_path: Path) -> None:
+    inputs = {name: tmp_path / name for name in ("frames", "extend", "extend@1", "depth@1/000", "depth/000")}
+
+    def task(key: str, args: dict[str, Any]) -> StageTask:
+        return StageTask(key, args, make_settings(), inputs, {}, tmp_path, None, tmp_path)
+
+    first, own = task("mesh", {}), task("mesh@1", {"piece": 1})
+    assert (first.input("extend").name, own.input("extend").name, own.input("frames").name) == (
+        "extend",
+        "extend@1",
+        "frames",
+    )
+    assert [key for key, _ in first.fan_in("depth")] == ["depth/000"]
+    assert [key for key, _ in own.fan_in("depth")] == ["depth@1/000"]
+    assert own.has("extend")
+    assert not own.has("frames")
+    with pytest.raises(StageFailed, match="mesh@1 needs the result of fuse"):
+        own.input("fuse")
+    assert [stage_of(key) for key in ("mesh", "mesh@1", "depth@2/000", "coarse/seg_000_0000_0180")] == [
+        "mesh",
+        "mesh",
+        "depth",
+        "coarse",
+    ]

@@ -200,6 +200,7 @@ class ModelSettings(Group):
         True, "map the winner again from scratch with COLMAP's bundle adjustment", source="decision 6"
     )
     register_rest: bool = option(True, "go on mapping over all remaining frames", source="method")
+    join: bool = option(True, "join what is left over through images that both models have", source="method")
     final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="measured")
     loss_scale_px: float = option(
         0.0,

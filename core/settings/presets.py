@@ -67,6 +67,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "model.further": 0,
         "model.confirm": False,
         "model.register_rest": False,
+        "model.join": False,
         "model.final_adjustment": False,
         "model.refine_principal_point": "never",
         "dense.views": 0,

@@ -12,8 +12,10 @@ from core.checks.model import check_model
 from core.flags import worst
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
+from core.sparse.joining import Attempt, join_rest
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from core.stage import Facts, StageResult, StageTask
+from core.viewgraph import read_table
 
 
 def run(task: StageTask) -> StageResult:
@@ -42,6 +44,17 @@ def run(task: StageTask) -> StageResult:
             and not _is_wrong(model, pairs, n_frames, n_search)
         ):
             model = grown
+    attempts: list[Attempt] = []
+    if settings.join and not task.piece:
+        model, attempts = join_rest(
+            graph,
+            model,
+            read_table(graph / "graph.npz"),
+            n_frames,
+            task.settings.mapper,
+            seed=task.settings.seed,
+            is_wrong=lambda joined: settings.veto and _is_wrong(joined, pairs, n_frames, n_search),
+        )
     adjustment = None
     if settings.final_adjustment:
         adjustment = _adjust(task, model)
@@ -53,7 +66,8 @@ def run(task: StageTask) -> StageResult:
     (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.piece else n_frames
-    return StageResult(_facts(model, adjustment, pairs, offered, n_search))
+    facts = _facts(model, adjustment, pairs, offered, n_search)
+    return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts]})
 
 
 def _is_wrong(model: Any, pairs: dict[str, Any], n_frames: int, n_search: int) -> bool:

@@ -90,7 +90,7 @@ def run_stages(graph, winner, out, **options):
     confirmed = confirm_stage.run(
         task("confirm", {"graph": graph, "reduce_refine": out / "reduce_refine"}, {"reduce_refine": reduced})
     ).facts
-    facts = {"frames": {"n_frames": N_FRAMES}, "confirm": confirmed}
+    facts = {"frames": {"n_frames": N_FRAMES, "n_search": N_FRAMES}, "confirm": confirmed}
     return confirmed, extend_stage.run(task("extend", {"graph": graph, "confirm": out / "confirm"}, facts)).facts
 
 

@@ -27,9 +27,9 @@ SUITE: tuple[Scene, ...] = (
     Scene("false-boxes", 24, WIDE, false_boxes=0.35, missed=0.55),
     Scene("masks", 25, NARROW, distance_mm=55.0, masks=True),
     Scene("noisy", 26, SMALL, noise=0.03, texture=0.8),
-    Scene("still", 27, MIDDLE, still=True, expect="flagged"),
-    Scene("soft", 28, MIDDLE, soft_mm=2.5, expect="flagged"),
-    Scene("bare-metal", 29, MIDDLE, texture=0.0, n_defects=5, expect="flagged"),
+    Scene("still", 27, MIDDLE, n_frames=60, still=True, expect="flagged"),
+    Scene("soft", 28, MIDDLE, n_frames=60, turn_deg=25.0, soft_mm=2.5, expect="flagged"),
+    Scene("bare-metal", 29, MIDDLE, n_frames=60, turn_deg=25.0, texture=0.0, n_defects=5, expect="flagged"),
 )
 
 _LENS_A, _LENS_B, _LENS_C = Lens(440, 330, 84.0, 0.01), Lens(480, 352, 102.0, -0.02), Lens(360, 270, 76.0)

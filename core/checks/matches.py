@@ -38,14 +38,12 @@ class Agreement:
     """(m, 2) frame indices."""
     shares: F64
     """(m,) of their verified matches, those that the model's motion explains."""
-    shared_points: I64
-    """(m,) 3D points that both frames observe."""
 
 
 def match_agreement(model: Any, graph: Mapping[str, NDArray[Any]]) -> Agreement:
     """Compare the verified pairs of ``graph.npz`` with a model (`pycolmap.Reconstruction`, image_id = index + 1)."""
     views = {image_id - 1: _View(model, image_id) for image_id in model.reg_image_ids()}
-    pairs, shares, shared = [], [], []
+    pairs, shares = [], []
     offsets = graph["offsets"]
     for row, (first, second) in enumerate(graph["pairs"].tolist()):
         start, end = int(offsets[row]), int(offsets[row + 1])
@@ -53,11 +51,9 @@ def match_agreement(model: Any, graph: Mapping[str, NDArray[Any]]) -> Agreement:
             continue
         matches = graph["inliers"][start:end].astype(np.int64)
         angles = _epipolar_angles(views[first], views[second], matches)
-        a, b = views[first].points[matches[:, 0]], views[second].points[matches[:, 1]]
         pairs.append((first, second))
         shares.append(float((angles * views[first].focal <= TOLERANCE_PX).mean()))
-        shared.append(int(((a == b) & (a >= 0)).sum()))
-    return Agreement(np.array(pairs, np.int64).reshape(-1, 2), np.array(shares), np.array(shared, np.int64))
+    return Agreement(np.array(pairs, np.int64).reshape(-1, 2), np.array(shares))
 
 
 def check_matches(agreement: Agreement) -> list[Flag]:
@@ -83,7 +79,7 @@ def check_matches(agreement: Agreement) -> list[Flag]:
 
 
 class _View:
-    """Rays and 3D points of the keypoints of one registered image."""
+    """Pose and keypoint rays of one registered image."""
 
     def __init__(self, model: Any, image_id: int) -> None:
         image = model.image(image_id)
@@ -91,7 +87,6 @@ class _View:
         keypoints = np.array([point.xy for point in image.points2D]).reshape(-1, 2)
         rays = np.asarray(camera.cam_ray_from_img(keypoints)).reshape(-1, 3)
         self.rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
-        self.points = np.array([p.point3D_id if p.has_point3D() else -1 for p in image.points2D], np.int64)
         self.cam_from_world = np.asarray(image.cam_from_world().matrix())
         self.focal = float(camera.mean_focal_length())
 

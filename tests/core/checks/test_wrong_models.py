@@ -51,7 +51,7 @@ def test_the_right_model_passes(made: tuple[Any, Any]) -> None:
     assert codes(model, graph) == {}
     agreement = match_agreement(model, graph)
     assert np.median(agreement.shares) > 0.95
-    assert agreement.shared_points.min() > 30
+    assert len(agreement.pairs) == len(graph["pairs"])
 
 
 def test_a_half_put_into_the_wrong_place_is_found_although_no_rotation_is_wrong(made: tuple[Any, Any]) -> None:

@@ -56,12 +56,12 @@ def tracks_of(model: Any) -> Tracks:
     )
 
 
-def points_across(tracks: Tracks, frames: I64) -> I64:
-    """(n - 1,) moving points seen both up to each of the (n,) rising frames and after it.
+def points_across(tracks: Tracks, frames: I64, least_motion_px: float = MIN_MOTION_PX) -> I64:
+    """(n - 1,) points seen both up to each of the (n,) rising frames and after it that move at least so far.
 
-    Where nothing moves the picture stands still: the points of a stall count by what they do before or after it.
+    The points of a stall count by what they do before or after it.
     """
-    moving = tracks.motion_px >= MIN_MOTION_PX
+    moving = tracks.motion_px >= least_motion_px
     begins = np.searchsorted(np.sort(tracks.first[moving]), frames[:-1], side="right")
     ended = np.searchsorted(np.sort(tracks.last[moving]), frames[:-1], side="right")
     return np.asarray(begins - ended, np.int64)
@@ -69,6 +69,8 @@ def points_across(tracks: Tracks, frames: I64) -> I64:
 
 def check_joins(tracks: Tracks, frames: I64, n_search: int) -> Flag | None:
     """`weak_join` at the cut with the fewest moving points, when these are too few.
+
+    It is an error only where hardly any point, moving or not, reaches across: while the rotor stands, nothing moves.
 
     Args:
         tracks: of the model.
@@ -82,6 +84,7 @@ def check_joins(tracks: Tracks, frames: I64, n_search: int) -> Flag | None:
     weakest = int(np.argmin(across))
     if across[weakest] >= WEAK_POINTS:
         return None
-    severity: Severity = "error" if across[weakest] < BROKEN_POINTS else "warning"
+    broken = points_across(tracks, ordered, 0.0).min() < BROKEN_POINTS
+    severity: Severity = "error" if broken else "warning"
     where = f"between frames {ordered[weakest]} and {ordered[weakest + 1]}"
     return Flag("weak_join", severity, float(across[weakest]), float(WEAK_POINTS), where)

@@ -12,6 +12,7 @@ from sqlalchemy import select
 from core.outputs import TABLES
 from core.report.record import RunRecord
 from core.settings import make_settings
+from core.stage import stage_of
 from store.db import Database, open_sqlite
 from store.inspections import Inspections
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow
@@ -56,7 +57,7 @@ def results(hidden: Path, run: str, stages: list[str]) -> dict[str, Path]:
     folders = {}
     for stage in stages:
         folders[stage] = hidden / "results" / stage / run
-        for name in (*FILES_OF[stage], "result.json"):
+        for name in (*FILES_OF[stage_of(stage)], "result.json"):
             path = folders[stage] / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(f"{run} {stage} {name}")
@@ -75,6 +76,15 @@ def test_a_whole_run_publishes_every_name_of_the_contract(hidden: Path) -> None:
     assert (hidden.parent / "sparse/cameras.bin").read_text() == "a extend model/cameras.bin"
     assert json.loads((hidden.parent / "summary.json").read_text())["state"] == "succeeded"
     assert [path.name for path in hidden.iterdir() if path.name != "results"] == ["published.json"]
+
+
+def test_further_models_lie_beside_the_first_when_they_came_to_their_end(hidden: Path) -> None:
+    own = ["extend", "fuse", "mesh", "map_defects", "timeline"]
+    folders = results(hidden, "a", [*FILES_OF, *(f"{stage}@1" for stage in own), "extend@2", "mesh@2"])
+    publish(full_record(), folders, hidden.parent, hidden)
+    further = {name for name in PUBLISHED if name.startswith(("sparse/", "dense/", "mapping/"))}
+    assert published(hidden) == PUBLISHED | set(TABLES) | {f"models/1/{name}" for name in further}
+    assert (hidden.parent / "models/1/dense/fused.ply").read_text() == "a fuse@1 fused.ply"
 
 
 def test_what_is_no_longer_there_is_taken_away(hidden: Path) -> None:

@@ -90,7 +90,7 @@ def test_points_that_never_move_hold_nothing_together(made: tuple[Any, Any]) -> 
     still = type(tracks)(tracks.first, tracks.last, np.zeros(len(tracks.first)))
     flag = check_joins(still, frames, N)
     assert flag is not None
-    assert (flag.code, flag.value) == ("weak_join", 0.0)
+    assert (flag.code, flag.severity, flag.value) == ("weak_join", "warning", 0.0)
     assert check_joins(tracks, frames, N) is None
 
 

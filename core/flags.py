@@ -24,6 +24,7 @@ FLAG_CODES: Mapping[str, str] = {
     "still_pixels_masked": "parts of the picture never move (burned-in text, dirt on the lens) and give no keypoints",
     "boxes_in_crop_frame": "boxes were scaled to the cropped image, as the thesis does; most places are wrong by it",
     "principal_point_at_crop_centre": "the principal point started at the crop's centre, as the thesis does",
+    "picture_jumps": "neighbouring frames share far fewer matches than they should: a jump, perhaps by whole blades",
     "gap_spanned": "pairs beyond the sequence join the frames before a thin or broken stretch with those after it",
     "no_parallax": "the views hardly differ in place (static or only turning camera): no depth can be known",
     "bent_model": "the model's rotations disagree with those measured between pairs of images",

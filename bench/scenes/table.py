@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf, isinf
 from statistics import median
 from typing import Any
 
@@ -31,7 +32,8 @@ def chord_mm(scene: Scene) -> float:
 
 def rows(scenes: Sequence[Scene], found: Sequence[Found]) -> list[list[str]]:
     """Cells of the table without its head."""
-    return [_row(scene, one) for scene, one in zip(scenes, found, strict=True)] + [_median(scenes, found)]
+    cells = [_row(scene, one) for scene, one in zip(scenes, found, strict=True)]
+    return [*cells, _median(scenes, found)] if any(scene.expect == "mapped" for scene in scenes) else cells
 
 
 def _row(scene: Scene, one: Found) -> list[str]:
@@ -61,15 +63,16 @@ def _median(scenes: Sequence[Scene], found: Sequence[Found]) -> list[str]:
 
     def middle(values: list[float | None]) -> float | None:
         """A scene without a figure is the worst, not none."""
-        return median([v if v is not None else float("nan") for v in values]) if None not in values else None
+        found = median([inf if value is None else value for value in values])
+        return None if isinf(found) else found
 
     registered = median([score["frames"]["registered_annotated_share"] or 0.0 for _, score in chosen])
     mapped = median([score["placement"]["mapped_share"] or 0.0 for _, score in chosen])
     places = [
-        middle([_share(scene, score["placement"][name]) for scene, score in chosen if score["placement"][name]])
+        middle([_share(scene, score["placement"][name]) for scene, score in chosen])
         for name in ("position_median_mm", "position_p95_mm")
     ]
-    wrong = middle([score["placement"]["wrong_mapped_share"] or 0.0 for _, score in chosen])
+    wrong = middle([score["placement"]["wrong_mapped_share"] for _, score in chosen])
     expected = sum(score["defects"]["expected"] for _, score in chosen)
     sums = [sum(score["defects"][name] for _, score in chosen) for name in ("found", "split", "extra")]
     return [

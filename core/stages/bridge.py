@@ -1,4 +1,4 @@
-"""Stage `bridge`: pairs beyond the sequence, where it is thin or broken."""
+"""Stage `bridge`: pairs beyond the sequence where it is thin or broken, and pairs over a jump taken out."""
 
 from __future__ import annotations
 
@@ -6,40 +6,65 @@ import json
 
 import torch
 
+from core.features.io import read_features
 from core.flags import Flag
 from core.matching.bridges import agreeing, bridge_pairs, find_gaps, find_pieces, select
+from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
-from core.stages.matches import match_all
+from core.stages.matches import feature_folders, match_all
+from core.verification import read_camera
 from core.viewgraph import join_tables, make_table, read_table, table_facts, write_table
 
 
 def run(task: StageTask) -> StageResult:
-    """Write ``pairs.npz`` with the further pairs, and say which gaps they span."""
+    """Write ``pairs.npz`` with the further pairs and ``dropped.json`` with the pairs over jumps."""
     torch.set_num_threads(task.threads)
-    rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))
+    rows = sorted(
+        json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8")), key=lambda row: row["index"]
+    )
     n_search = sum(row["role"] != "added" for row in rows)
+    position = positions([float(row["time_s"]) for row in rows], n_search)
+    files = feature_folders(task)
+    keypoints = [read_features(files[index]).keypoints for index in range(len(rows))]
+    camera = read_camera(task.input("camera") / "camera.json")
+    size = int(camera.width), int(camera.height)
+
     table = join_tables(read_table(folder / "pairs.npz") for _, folder in task.fan_in("matches"))
+    density = match_density(table, keypoints, *size)
+    jumps = find_jumps(table, density, position, n_search)
+    dropped = spans_any(table, position, jumps)
+    (task.out / "dropped.json").write_text(json.dumps(table.pairs[dropped].tolist()))
+    table = select(table, ~dropped)
+
     gaps = find_gaps(table, n_search)
     pairs = bridge_pairs(table, n_search)
     extra = make_table(pairs, match_all(task, pairs))
-    believed = agreeing(table, extra, len(rows))
-    extra = select(extra, believed)
+    enough = dense_enough(extra, match_density(extra, keypoints, *size), table, density * ~dropped, position)
+    extra = select(extra, enough)
+    extra = select(extra, agreeing(table, extra, len(rows)))
     write_table(task.out / "pairs.npz", extra)
-    spanned = _spanned(gaps, extra.pairs[believed].tolist())
+    spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())
     pieces = find_pieces(join_tables([table, extra]), len(rows))
     task.report(1, 1)
     return StageResult(
         {
             **table_facts(extra),
             "gaps": [list(gap) for gap in gaps],
+            "jumps": [[cut, cut + 1] for cut in jumps],
+            "dropped": int(dropped.sum()),
             "spanned": [list(gap) for gap in spanned],
             "largest_piece": int(max((pieces == label).sum() for label in set(pieces.tolist()))),
-            "flags": [
-                Flag("gap_spanned", "info", where=f"between frames {before} and {after}").to_dict()
-                for before, after in spanned
-            ],
+            "flags": [flag.to_dict() for flag in (*_jump_flags(jumps), *_gap_flags(spanned))],
         }
     )
+
+
+def _jump_flags(jumps: list[int]) -> list[Flag]:
+    return [Flag("picture_jumps", "warning", where=f"between frames {cut} and {cut + 1}") for cut in jumps]
+
+
+def _gap_flags(spanned: list[tuple[int, int]]) -> list[Flag]:
+    return [Flag("gap_spanned", "info", where=f"between frames {before} and {after}") for before, after in spanned]
 
 
 def _spanned(gaps: list[tuple[int, int]], pairs: list[list[int]]) -> list[tuple[int, int]]:

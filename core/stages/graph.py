@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
+
 from core.features.io import read_features
+from core.matching.bridges import select
 from core.stage import StageResult, StageTask
 from core.stages.matches import feature_folders
 from core.verification import read_camera
@@ -17,6 +20,9 @@ def run(task: StageTask) -> StageResult:
     if "bridge" in task.inputs:
         folders.append(task.input("bridge"))
     table = join_tables(read_table(folder / "pairs.npz") for folder in folders)
+    if "bridge" in task.inputs:
+        dropped = {tuple(pair) for pair in json.loads((task.input("bridge") / "dropped.json").read_text())}
+        table = select(table, np.array([tuple(pair) not in dropped for pair in table.pairs.tolist()], bool))
     write_table(task.out / "graph.npz", table)
     task.report(0.2, 1, "writing the database")
     rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))

@@ -22,6 +22,10 @@ NEAR = 10
 JUMP_SHARE = 0.3
 """A cut whose best pair has less than this of the usual density is a jump. A jump by eight blades leaves 0.18; dark,
 blurred and fast stretches of rendered clips 0.8."""
+BESIDE = 2
+"""Frames right before and right after a jump, which match among themselves"""
+GOOD_SHARE = 0.5
+"""with at least this share of the usual density."""
 PAIR_SHARE = 0.2
 """A pair sought over a gap is seen from further apart, and may have less."""
 MIN_OVERLAP = 0.05
@@ -59,16 +63,21 @@ def usual_density(pairs: NDArray[np.int32], density: F64, position: F64, low: fl
 def find_jumps(table: PairTable, density: F64, position: F64, n_search: int) -> list[int]:
     """Frames k of the sequence such that the picture jumps between k and k + 1.
 
-    Cuts that no pair spans are none of them: there is nothing to be mistaken about.
+    Cuts that no pair spans are none of them: there is nothing to be mistaken about. Nor is a blurred or dark stretch,
+    whose frames match each other as badly as they match the others.
     """
     a, b = position[table.pairs[:, 0]], position[table.pairs[:, 1]]
     first, last = np.minimum(a, b), np.maximum(a, b)
     jumps = []
     for cut in range(n_search - 1):
         across = (first <= cut) & (last > cut) & (density > 0)
-        if across.any() and density[across].max() < JUMP_SHARE * usual_density(
-            table.pairs, density, position, cut, cut + 1
-        ):
+        if not across.any():
+            continue
+        usual = usual_density(table.pairs, density, position, cut, cut + 1)
+        before = (last <= cut) & (first >= cut - BESIDE)
+        after = (first >= cut + 1) & (last <= cut + 1 + BESIDE)
+        sharp = all(own.any() and np.median(density[own]) >= GOOD_SHARE * usual for own in (before, after))
+        if sharp and density[across].max() < JUMP_SHARE * usual:
             jumps.append(cut)
     return jumps
 

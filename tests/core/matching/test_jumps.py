@@ -68,6 +68,8 @@ def test_blurred_frames_dark_stretches_and_breaks_are_none() -> None:
     assert jumps_of(blurred) == []
     broken = {(a, b): 0 if a <= 19 < b else n for (a, b), n in SEQUENCE.items()}
     assert jumps_of(broken) == []
+    stretch = {(a, b): n // 8 if {a, b} & set(range(16, 24)) else n for (a, b), n in SEQUENCE.items()}
+    assert jumps_of(stretch) == []
     weak = {pair: n // 5 if 10 < pair[0] < 30 and 10 < pair[1] < 30 else n for pair, n in SEQUENCE.items()}
     assert jumps_of(weak) == []
 

@@ -223,7 +223,7 @@ def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
     surface = (key("extend"), key("fuse"), key("mesh"))
     return [
         TaskSpec(key("extend"), ("frames", "graph", "pieces"), one, optional=True),
-        TaskSpec(key("undistort"), ("frames", key("extend")), one, optional=True),
+        TaskSpec(key("undistort"), ("frames", "pieces", key("extend")), one, optional=True),
         TaskSpec(depth, (key("undistort"),), whole, optional=True),
         TaskSpec(geometric, (key("undistort"), depth), whole, optional=True),
         TaskSpec(key("fuse"), (key("undistort"), geometric), one, optional=True),

@@ -33,6 +33,8 @@ PIECE_SIDE = 5
 """Frames spread over each of two pieces, each matched with each."""
 MAX_PIECES = 4
 MAX_PAIRS = 300
+PROBES = 6
+"""Of each place, pairs that are tried first; the others only if one of these holds."""
 AGREE_DEG = 4.0
 MIN_AGREEING = 3
 
@@ -68,26 +70,38 @@ def find_pieces(table: PairTable, n_frames: int) -> I64:
     return labels
 
 
-def bridge_pairs(table: PairTable, n_search: int) -> list[tuple[int, int]]:
-    """Further pairs worth trying, sorted: across every gap, and between the large pieces; at most `MAX_PAIRS`."""
+Pair = tuple[int, int]
+
+
+def bridge_pairs(table: PairTable, n_search: int) -> list[list[Pair]]:
+    """Further pairs worth trying, place by place and the nearest in time first; at most `MAX_PAIRS` in all.
+
+    The places are the gaps and every two of the large pieces. No pair occurs twice.
+    """
     degree = np.bincount(table.pairs[is_strong(table)].ravel(), minlength=n_search)[:n_search]
     usable = np.flatnonzero(degree >= MIN_DEGREE)
-    wanted: list[tuple[int, int]] = []
+    wanted: list[list[Pair]] = []
     for before, after in find_gaps(table, n_search):
         left, right = usable[usable <= before][-SIDE:], usable[usable >= after][:SIDE]
-        wanted += _by_distance([(int(a), int(b)) for a in left for b in right])
+        wanted.append(_by_distance([(int(a), int(b)) for a in left for b in right]))
     labels = find_pieces(table, n_search)
     sizes = np.bincount(labels[usable], minlength=1)
     large = [int(label) for label in np.argsort(-sizes, kind="stable") if sizes[label] >= PIECE_FRAMES][:MAX_PIECES]
     spread = {label: _spread(usable[labels[usable] == label]) for label in large}
     for row, one in enumerate(large):
         for other in large[row + 1 :]:
-            wanted += [(min(a, b), max(a, b)) for a in spread[one] for b in spread[other]]
+            wanted.append(_by_distance([(min(a, b), max(a, b)) for a in spread[one] for b in spread[other]]))
     known = {(int(a), int(b)) for a, b in table.pairs}
-    return sorted(list(dict.fromkeys(pair for pair in wanted if pair not in known))[:MAX_PAIRS])
+    places: list[list[Pair]] = []
+    for place in wanted:
+        own = [pair for pair in place if pair not in known][: MAX_PAIRS - sum(len(one) for one in places)]
+        known.update(own)
+        if own:
+            places.append(own)
+    return places
 
 
-def _by_distance(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+def _by_distance(pairs: Sequence[Pair]) -> list[Pair]:
     return sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair))
 
 

@@ -8,12 +8,12 @@ import torch
 
 from core.features.io import read_features
 from core.flags import Flag
-from core.matching.bridges import agreeing, bridge_pairs, find_gaps, find_pieces, select
+from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, find_gaps, find_pieces, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
 from core.stages.matches import feature_folders, match_all
 from core.verification import read_camera
-from core.viewgraph import join_tables, make_table, read_table, table_facts, write_table
+from core.viewgraph import PairTable, join_tables, make_table, read_table, table_facts, write_table
 
 
 def run(task: StageTask) -> StageResult:
@@ -37,10 +37,16 @@ def run(task: StageTask) -> StageResult:
     table = select(table, ~dropped)
 
     gaps = find_gaps(table, n_search)
-    pairs = bridge_pairs(table, n_search)
-    extra = make_table(pairs, match_all(task, pairs))
-    enough = dense_enough(extra, match_density(extra, keypoints, *size), table, density * ~dropped, position)
-    extra = select(extra, enough)
+
+    def tried(pairs: list[Pair]) -> PairTable:
+        found = make_table(pairs, match_all(task, pairs))
+        usual = density * ~dropped
+        return select(found, dense_enough(found, match_density(found, keypoints, *size), table, usual, position))
+
+    places = bridge_pairs(table, n_search)
+    probes = [tried(place[:PROBES]) for place in places]
+    rest = [tried(place[PROBES:]) for place, probe in zip(places, probes, strict=True) if is_strong(probe).any()]
+    extra = join_tables([*probes, *rest])
     extra = select(extra, agreeing(table, extra, len(rows)))
     write_table(task.out / "pairs.npz", extra)
     spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())

@@ -44,7 +44,13 @@ def run(task: StageTask) -> StageResult:
         folder.mkdir(parents=True)
         model.write_binary(folder)
     (task.out / "pieces.json").write_text(json.dumps([_facts(model_stats(model)) for model in found], indent=1))
-    return StageResult({"n_pieces": len(found), "registered_images": [int(m.num_reg_images()) for m in found]})
+    return StageResult(
+        {
+            "n_pieces": len(found),
+            "registered_images": [int(model.num_reg_images()) for model in found],
+            "registered_first": len(taken),
+        }
+    )
 
 
 def _facts(stats: ModelStats) -> dict[str, float]:

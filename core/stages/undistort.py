@@ -10,9 +10,14 @@ from core.dense.cuda import resolve_method
 from core.dense.undistort import pinhole_model, undistort_map
 from core.dense.views import plan_views, sparse_views, write_views
 from core.errors import StageFailed
+from core.settings.groups import DenseSettings
 from core.stage import StageResult, StageTask
 
 JPEG_QUALITY = 97
+
+
+MIN_PIECE_VIEWS = 10
+"""Depth maps of a further model, at least."""
 
 
 def run(task: StageTask) -> StageResult:
@@ -21,7 +26,7 @@ def run(task: StageTask) -> StageResult:
     resolve_method(settings)  # a demand that cannot be met is refused before the work, not after
     model = pycolmap.Reconstruction(str(task.input("extend") / "model"))
     views = sparse_views(model)
-    plan = plan_views(views, settings)
+    plan = plan_views(views, _of_its_share(task))
     if not plan:
         raise StageFailed("no two registered images see the same points from different places", where="undistort")
     needed = sorted({name for view in plan for name in (view.name, *view.sources)})
@@ -52,3 +57,13 @@ def run(task: StageTask) -> StageResult:
             "focal_px": round(pinhole.focal_px, 3),
         }
     )
+
+
+def _of_its_share(task: StageTask) -> DenseSettings:
+    """A further model has depth maps by its share of the registered frames: the budget is that of the run."""
+    settings = task.settings.dense
+    if not task.piece or not settings.views:
+        return settings
+    counts = [int(task.facts["pieces"]["registered_first"]), *map(int, task.facts["pieces"]["registered_images"])]
+    share = counts[task.piece] / sum(counts)
+    return settings.model_copy(update={"views": max(MIN_PIECE_VIEWS, round(share * settings.views))})

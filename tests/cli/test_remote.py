@@ -5,11 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import httpx
 import pytest
@@ -48,8 +49,24 @@ def video(tmp_path: Path) -> Path:
     return path
 
 
+class _Listening:
+    """Standard output that starts something once when it is told that a job is running."""
+
+    def __init__(self, stream: TextIO, start: Callable[[], object]) -> None:
+        self._stream, self._start, self._heard = stream, start, False
+
+    def write(self, text: str) -> int:
+        if "running" in text and not self._heard:
+            self._heard = True
+            threading.Thread(target=self._start).start()
+        return self._stream.write(text)
+
+    def flush(self) -> None:
+        self._stream.flush()
+
+
 def test_submit_watch_and_download_the_sample(
-    backend: Backend, call: Callable[..., tuple[int, str]], tmp_path: Path
+    backend: Backend, call: Callable[..., tuple[int, str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     code, out = call("submit", str(VIDEO), "--preset", "draft", "--set", "matching.window=8", "--label", "blade 4")
     assert code == exits.DONE
@@ -64,8 +81,10 @@ def test_submit_watch_and_download_the_sample(
     while "running" not in call("status", one)[1]:
         assert time.monotonic() < deadline
         time.sleep(0.05)
-    threading.Timer(0.5, backend.publish, (one, {"mapping/t.csv": b"1", "dense/f.ply": b"2" * 100})).start()
-    code, out = call("watch", one, "--json")
+    files = {"mapping/t.csv": b"1", "dense/f.ply": b"2" * 100}
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", _Listening(sys.stdout, lambda: backend.publish(one, files)))
+        code, out = call("watch", one, "--json")
     states = [json.loads(line)["state"] for line in out.splitlines()]
     assert (code, states[0], states[-1]) == (exits.DONE, "running", "succeeded")
     assert call("download", one, "--out", str(tmp_path / "out"), "--include", "mapping/*")[0] == exits.DONE

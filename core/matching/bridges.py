@@ -62,7 +62,7 @@ def find_gaps(table: PairTable, n_search: int) -> list[tuple[int, int]]:
     return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def find_pieces(table: PairTable, n_frames: int) -> I64:
+def components_of(table: PairTable, n_frames: int) -> I64:
     """(n_frames,) number of the piece that strong pairs join each frame into."""
     first, second = table.pairs[is_strong(table)].T
     links = coo_matrix((np.ones(len(first), np.int8), (first, second)), shape=(n_frames, n_frames))
@@ -84,7 +84,7 @@ def bridge_pairs(table: PairTable, n_search: int) -> list[list[Pair]]:
     for before, after in find_gaps(table, n_search):
         left, right = usable[usable <= before][-SIDE:], usable[usable >= after][:SIDE]
         wanted.append(_by_distance([(int(a), int(b)) for a in left for b in right]))
-    labels = find_pieces(table, n_search)
+    labels = components_of(table, n_search)
     sizes = np.bincount(labels[usable], minlength=1)
     large = [int(label) for label in np.argsort(-sizes, kind="stable") if sizes[label] >= PIECE_FRAMES][:MAX_PIECES]
     spread = {label: _spread(usable[labels[usable] == label]) for label in large}
@@ -117,7 +117,7 @@ def agreeing(table: PairTable, extra: PairTable, n_frames: int) -> Bool:
     pair to one rotation between the pieces; the largest group that agrees on it is believed if it has
     `MIN_AGREEING` pairs and is most of them.
     """
-    labels = find_pieces(table, n_frames)
+    labels = components_of(table, n_frames)
     turned = _rotations(table, labels)
     strong = is_strong(extra)
     ends = labels[extra.pairs]

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from core.matching.bridges import find_pieces as components
-from core.matching.bridges import is_strong, select
+from core.matching.bridges import components_of, is_strong, select
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
 from core.sparse.mapper import restrict_model
@@ -70,7 +69,7 @@ def find_pieces(
 def groups_of(table: PairTable, left: np.ndarray[Any, np.dtype[np.bool_]]) -> list[Any]:
     """Frames that strong pairs join without the help of frames outside `left`, the largest group first."""
     inside = select(table, is_strong(table) & left[table.pairs].all(axis=1))
-    labels = components(inside, len(left))
+    labels = components_of(inside, len(left))
     sizes = np.bincount(labels[left], minlength=1)
     order = np.argsort(-sizes, kind="stable")
     return [np.flatnonzero(left & (labels == label)) for label in order if sizes[label] >= MIN_FRAMES]

@@ -8,7 +8,7 @@ import torch
 
 from core.features.io import read_features
 from core.flags import Flag
-from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, find_gaps, find_pieces, is_strong, select
+from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
 from core.stages.matches import feature_folders, match_all
@@ -50,7 +50,7 @@ def run(task: StageTask) -> StageResult:
     extra = select(extra, agreeing(table, extra, len(rows)))
     write_table(task.out / "pairs.npz", extra)
     spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())
-    pieces = find_pieces(join_tables([table, extra]), len(rows))
+    pieces = components_of(join_tables([table, extra]), len(rows))
     task.report(1, 1)
     return StageResult(
         {

@@ -11,8 +11,8 @@ from core.matching.bridges import (
     SIDE,
     agreeing,
     bridge_pairs,
+    components_of,
     find_gaps,
-    find_pieces,
     select,
 )
 from core.viewgraph import PairTable
@@ -75,7 +75,7 @@ def test_a_thin_place_is_strengthened_too() -> None:
     pairs = sequential_pairs(N, WINDOW)
     base = table(pairs, [0 if a <= 19 < b and (a, b) not in ((19, 20), (18, 20)) else 200 for a, b in pairs])
     assert find_gaps(base, N) == [(19, 20)]
-    assert len(np.unique(find_pieces(base, N))) == 1
+    assert len(np.unique(components_of(base, N))) == 1
     known = {tuple(pair) for pair in base.pairs.tolist()}
     assert not known & set(sought(base, N))
     assert (14, 25) in sought(base, N)

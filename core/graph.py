@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from core.settings import Settings
-from core.stage import PIECE_MARK, Facts, stage_of
+from core.stage import Facts, key_of, stage_of
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
 
@@ -206,7 +206,7 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts]) -> list[T
     timelines = ["timeline"]
     for piece in range(1, n_pieces + 1):
         tasks += _of_piece(piece, timelines)
-        timelines.append(f"timeline{PIECE_MARK}{piece}")
+        timelines.append(key_of("timeline", piece))
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
 
@@ -215,7 +215,7 @@ def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
     """Everything from the final model on for a further model, one task per stage; failing ones are an outcome."""
 
     def key(stage: str) -> str:
-        return f"{stage}{PIECE_MARK}{piece}"
+        return key_of(stage, piece)
 
     depth, geometric = f"{key('depth')}/000", f"{key('geometric')}/000"
     whole = {"piece": piece, "start": 0, "end": ALL_VIEWS}

@@ -130,9 +130,9 @@ def choose_frames(
     extra = sorted(wanted.difference(sampled))
     room = max(0, settings.max_count - len(sampled))
     taken = _spread(extra, room)
-    alone = _missing_neighbours({*sampled, *taken}, wanted.intersection({*sampled, *taken}), interval, reach)
-    neighbours = set(_spread(alone, max(0, room - len(taken))))
-    search = sorted({*sampled, *taken, *neighbours})
+    known = {*sampled, *taken}
+    neighbours = set(_spread(_missing_neighbours(known, wanted & known, interval, reach), max(0, room - len(taken))))
+    search = sorted(known | neighbours)
     in_sample = set(sampled)
     chosen: list[ChosenFrame] = []
     for source in search:

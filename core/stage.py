@@ -20,6 +20,16 @@ PIECE_MARK = "@"
 """Between a task's key and the number of the further model that it works on: ``mesh@1``, ``depth@1/000``."""
 
 
+def key_of(stage: str, piece: int) -> str:
+    """Key of a stage's one task for a model; 0 is the run's own."""
+    return f"{stage}{PIECE_MARK}{piece}" if piece else stage
+
+
+def piece_of(key: str) -> int:
+    """Number of the model that a task works on, by its key."""
+    return int(key.split("/", 1)[0].partition(PIECE_MARK)[2] or 0)
+
+
 def stage_of(key: str) -> str:
     """Name of the stage of a task."""
     return key.split("/", 1)[0].split(PIECE_MARK, 1)[0]
@@ -65,19 +75,18 @@ class StageTask:
 
     def input(self, key: str) -> Path:
         """Result folder of a dependency, that of its own model first; `StageFailed` when it has none."""
-        for name in (f"{key}{PIECE_MARK}{self.piece}", key):
+        for name in (key_of(key, self.piece), key):
             if name in self.inputs:
                 return self.inputs[name]
         raise StageFailed(f"task {self.key} needs the result of {key}", where=self.key)
 
     def has(self, key: str) -> bool:
         """Whether it depends on `key`, of its own model."""
-        return (f"{key}{PIECE_MARK}{self.piece}" if self.piece else key) in self.inputs
+        return key_of(key, self.piece) in self.inputs
 
     def fan_in(self, stage: str) -> list[tuple[str, Path]]:
         """(key, folder) of every finished task of a fanned-out stage, ordered by key."""
-        mark = f"{PIECE_MARK}{self.piece}" if self.piece else ""
-        prefix = f"{stage}{mark}/"
+        prefix = key_of(stage, self.piece) + "/"
         return sorted((key, path) for key, path in self.inputs.items() if key.startswith(prefix))
 
 

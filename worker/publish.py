@@ -14,7 +14,7 @@ from core.report.build import Report, build_report, write_tables
 from core.report.load import load_tables, served_pieces
 from core.report.record import RunRecord, RunState, TaskRecord, TaskState
 from core.settings import Settings
-from core.stage import PIECE_MARK, Facts
+from core.stage import Facts, key_of
 from core.versions import all_versions
 from store.records import InspectionView, TaskView
 from worker.results import MANIFEST, ResultFolders
@@ -121,11 +121,11 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
 
 def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:
     """(published path, file) of everything the table of outputs finds."""
-    wanted = [(output, "", "") for output in OUTPUTS]
+    wanted = [(output, "", 0) for output in OUTPUTS]
     for piece in served_pieces(folders):
-        wanted += [(output, f"models/{piece}/", f"{PIECE_MARK}{piece}") for output in OF_FURTHER_MODELS]
-    for output, below, mark in wanted:
-        source = _source(output, folders, facts, mark)
+        wanted += [(output, f"models/{piece}/", piece) for output in OF_FURTHER_MODELS]
+    for output, below, piece in wanted:
+        source = _source(output, folders, facts, piece)
         if source is None or (output.needs_trust and not trusted):
             continue
         if not output.folder:
@@ -135,9 +135,9 @@ def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: boo
             yield f"{below}{output.path}/{path.relative_to(source).as_posix()}", path
 
 
-def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts], mark: str) -> Path | None:
+def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts], piece: int) -> Path | None:
     for key, inner in output.sources:
-        folder = folders.get(best_case(facts) if key == BEST_CASE else key + mark)
+        folder = folders.get(best_case(facts) if key == BEST_CASE else key_of(key, piece))
         if folder is not None and (folder / inner).exists():
             return folder / inner
     return None

@@ -14,8 +14,9 @@ from core.checks.lens import check_lens
 from core.checks.matches import check_matches, match_agreement
 from core.checks.parallax import check_planar, largest_angle_deg, model_parallax
 from core.checks.rotations import check_rotations, disagreement, measured_rotations
-from core.flags import Flag
-from core.sparse.mapper import ModelStats
+from core.flags import Flag, worst
+from core.sparse.mapper import ModelStats, model_stats
+from core.viewgraph import PairTable
 
 SAMPLED_POINTS = 2000
 
@@ -49,6 +50,11 @@ def check_model(
         *check_lens(int(camera.width), int(camera.height), np.array(camera.params)),
     ]
     return [flag for flag in flags if flag is not None]
+
+
+def is_wrong(model: Any, table: PairTable, n_frames: int, n_search: int | None = None) -> bool:
+    """Whether `check_model` vetoes a model: the one rule by which a model is not gone on with."""
+    return worst(check_model(model, model_stats(model), vars(table), n_frames, n_search)) == "error"
 
 
 def point_angles_deg(model: Any, count: int = SAMPLED_POINTS) -> NDArray[np.float64]:

@@ -53,8 +53,7 @@ def usual_density(pairs: NDArray[np.int32], density: F64, position: F64, low: fl
         low: position.
         high: position, not below `low`.
     """
-    a, b = position[pairs[:, 0]], position[pairs[:, 1]]
-    first, last = np.minimum(a, b), np.maximum(a, b)
+    first, last = np.sort(position[pairs], axis=1).T
     near = ((first >= low - NEAR) & (last <= low)) | ((first >= high) & (last <= high + NEAR))
     near &= density > 0
     return float(np.median(density[near])) if near.any() else 0.0
@@ -66,8 +65,7 @@ def find_jumps(table: PairTable, density: F64, position: F64, n_search: int) -> 
     Cuts that no pair spans are none of them: there is nothing to be mistaken about. Nor is a blurred or dark stretch,
     whose frames match each other as badly as they match the others.
     """
-    a, b = position[table.pairs[:, 0]], position[table.pairs[:, 1]]
-    first, last = np.minimum(a, b), np.maximum(a, b)
+    first, last = np.sort(position[table.pairs], axis=1).T
     jumps = []
     for cut in range(n_search - 1):
         across = (first <= cut) & (last > cut) & (density > 0)
@@ -85,9 +83,9 @@ def find_jumps(table: PairTable, density: F64, position: F64, n_search: int) -> 
 def spans_any(table: PairTable, position: F64, jumps: Sequence[int]) -> Bool:
     """(m,) which pairs reach over a jump."""
     spans = np.zeros(len(table.pairs), bool)
-    a, b = position[table.pairs[:, 0]], position[table.pairs[:, 1]]
+    first, last = np.sort(position[table.pairs], axis=1).T
     for cut in jumps:
-        spans |= (np.minimum(a, b) <= cut) & (np.maximum(a, b) > cut)
+        spans |= (first <= cut) & (last > cut)
     return spans
 
 

@@ -9,15 +9,14 @@ from typing import Any
 from core.report.models import join_detections, join_lists
 from core.report.record import RunTables
 from core.report.tables import read_json
-from core.stage import PIECE_MARK
+from core.stage import key_of, piece_of, stage_of
 
 
 def served_pieces(keys: Collection[str]) -> list[int]:
     """Numbers of the further models that came to their end, by the keys of the finished tasks."""
     if "timeline" not in keys:
         return []
-    marked = (key.partition(PIECE_MARK) for key in keys)
-    return sorted(int(number) for stage, _, number in marked if stage == "timeline" and number)
+    return sorted(piece_of(key) for key in keys if stage_of(key) == "timeline" and piece_of(key))
 
 
 def load_tables(folders: Mapping[str, Path]) -> RunTables:
@@ -28,13 +27,13 @@ def load_tables(folders: Mapping[str, Path]) -> RunTables:
         return read_json(path) if path is not None and path.is_file() else default
 
     further = served_pieces(folders)
-    timelines = ["timeline", *(f"timeline{PIECE_MARK}{piece}" for piece in further)]
+    timelines = [key_of("timeline", piece) for piece in (0, *further)]
     mapped = table("timeline", "detections.json", table("map_defects", "detections.json", None))
     return RunTables(
         detections=table("annotations", "detections.json"),
         frames=table("frames", "frames.json"),
         registered=table("extend", "registered.json"),
-        registered_further={piece: table(f"extend{PIECE_MARK}{piece}", "registered.json") for piece in further},
+        registered_further={piece: table(key_of("extend", piece), "registered.json") for piece in further},
         mapped_rows=mapped if not further else join_detections([table(key, "detections.json") for key in timelines]),
         timeline=join_lists([table(key, "timeline.json") for key in timelines]),
         defects=join_lists([table(key, "defects.json") for key in timelines]),

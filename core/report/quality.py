@@ -13,7 +13,7 @@ from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
 from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
-from core.stage import PIECE_MARK
+from core.stage import key_of, piece_of
 
 Row = Mapping[str, Any]
 Verdict = Literal["ok", "suspect", "refused"]
@@ -31,7 +31,7 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     if still is not None:
         flags.append(still)
     for task in record.tasks:
-        _, _, piece = task.key.partition(PIECE_MARK)
+        piece = piece_of(task.key)
         for row in [*task.facts.get("flags", ()), *_checks_that_count(record, task)]:
             flags.append(Flag.from_dict({**row, "where": f"model {piece}, {row['where']}"} if piece else row))
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
@@ -143,8 +143,7 @@ def _models(record: RunRecord) -> list[dict[str, Any]]:
     """The served models; the first is the run's own."""
     rows = []
     for number in (0, *sorted(record.tables.registered_further)):
-        mark = f"{PIECE_MARK}{number}" if number else ""
-        facts = record.facts(f"extend{mark}")
+        facts = record.facts(key_of("extend", number))
         if facts:
             names = ("registered_images", "points3D", "mean_reprojection_error_px")
             own = sum(defect.get("model", 0) == number for defect in record.tables.defects)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
-import numpy as np
 import pycolmap
 
 from core.checks.model import check_model
 from core.flags import Flag, worst
 from core.sparse.cases import Case, CaseResult, run_case
 from core.stage import StageResult, StageTask
+from core.viewgraph import read_table
 
 
 def run_case_task(task: StageTask, kind: str) -> StageResult:
@@ -49,8 +49,8 @@ def case_checks(result: CaseResult, case: Case) -> list[Flag]:
     """What speaks against the model of a case, by the same checks as for the final model; none without a model."""
     if result.model is None:
         return []
-    with np.load(case.graph / "graph.npz") as arrays:
-        return check_model(result.model, result.stats, dict(arrays), result.frames)
+    table = read_table(case.graph / "graph.npz")
+    return check_model(result.model, result.stats, vars(table), result.frames)
 
 
 def trust_facts(flags: list[Flag]) -> dict[str, Any]:

@@ -181,9 +181,9 @@ def _join(
     even, odd = slice(0, None, 2), slice(1, None, 2)
     if not holds(fit_similarity(first.rows(even), second.rows(even)), first.rows(odd), second.rows(odd)):
         return model, len(shared), "disagree"
-    together = _with_poses(graph, model, piece, fit_similarity(first, second))
-    options = mapper_options(settings, threads=threads, seed=seed, tuned=True)
     cache = open_cache(graph / "database.db", (), MIN_MATCHES)
+    together = _with_poses(cache, model, piece, fit_similarity(first, second))
+    options = mapper_options(settings, threads=threads, seed=seed, tuned=True)
     joined = densify(cache, together, build_tracks(table), read_frames(graph / "database.db", 0, n_frames), options)
     adjustment = pycolmap.BundleAdjustmentOptions()
     adjustment.print_summary = False
@@ -197,9 +197,9 @@ def _join(
     return (model, len(shared), "vetoed") if is_wrong(joined) else (joined, len(shared), "joined")
 
 
-def _with_poses(graph: Path, model: Any, piece: Any, similarity: Similarity) -> Any:
+def _with_poses(cache: Any, model: Any, piece: Any, similarity: Similarity) -> Any:
     """Copy of `model` without points, with the images that only `piece` has put into its frame."""
-    together = transfer_poses(open_cache(graph / "database.db", (), MIN_MATCHES), model)
+    together = transfer_poses(cache, model)
     camera_id = next(iter(together.cameras))
     for image_id in sorted(set(piece.reg_image_ids()) - set(model.reg_image_ids())):
         pose = piece.image(image_id).cam_from_world()

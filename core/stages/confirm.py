@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pycolmap
 
-from core.checks.model import check_model
-from core.flags import worst
+from core.checks.model import is_wrong
 from core.sparse.cases import Case
 from core.sparse.confirm import confirmed_or_searched
 from core.sparse.mapper import model_stats
 from core.stage import StageResult, StageTask
+from core.viewgraph import read_table
 
 
 def _veto(case: Case) -> Callable[[Any], bool]:
-    with np.load(case.graph / "graph.npz") as arrays:
-        graph = dict(arrays)
-    return lambda model: worst(check_model(model, model_stats(model), graph, case.end - case.start)) == "error"
+    table = read_table(case.graph / "graph.npz")
+    return lambda model: is_wrong(model, table, case.end - case.start)
 
 
 def run(task: StageTask) -> StageResult:

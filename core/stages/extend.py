@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 import pycolmap
 
-from core.checks.model import check_model
-from core.flags import worst
+from core.checks.model import check_model, is_wrong
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from core.stage import Facts, StageResult, StageTask
-from core.viewgraph import read_table
+from core.viewgraph import PairTable, read_table
 
 
 def run(task: StageTask) -> StageResult:
@@ -27,8 +26,11 @@ def run(task: StageTask) -> StageResult:
         model = pycolmap.Reconstruction(task.input("pieces") / str(task.piece) / "model")
     else:
         model = pycolmap.Reconstruction(task.input("confirm") / "model")
-    with np.load(graph / "graph.npz") as arrays:
-        pairs = dict(arrays)
+    table = read_table(graph / "graph.npz")
+
+    def vetoed(candidate: Any) -> bool:
+        return settings.veto and is_wrong(candidate, table, n_frames, n_search)
+
     if settings.register_rest and not task.piece:
         grown = register_rest(
             graph,
@@ -38,22 +40,18 @@ def run(task: StageTask) -> StageResult:
             seed=task.settings.seed,
             progress=lambda registered, offered: task.report(0.5 * registered, offered, f"{registered} registered"),
         )
-        if not (
-            settings.veto
-            and _is_wrong(grown, pairs, n_frames, n_search)
-            and not _is_wrong(model, pairs, n_frames, n_search)
-        ):
+        if not vetoed(grown) or vetoed(model):
             model = grown
     attempts: list[Attempt] = []
     if settings.join and not task.piece:
         model, attempts = join_rest(
             graph,
             model,
-            read_table(graph / "graph.npz"),
+            table,
             n_frames,
             task.settings.mapper,
             seed=task.settings.seed,
-            is_wrong=lambda joined: settings.veto and _is_wrong(joined, pairs, n_frames, n_search),
+            is_wrong=vetoed,
         )
     adjustment = None
     if settings.final_adjustment:
@@ -66,12 +64,8 @@ def run(task: StageTask) -> StageResult:
     (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.piece else n_frames
-    facts = _facts(model, adjustment, pairs, offered, n_search)
+    facts = _facts(model, adjustment, table, offered, n_search)
     return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts]})
-
-
-def _is_wrong(model: Any, pairs: dict[str, Any], n_frames: int, n_search: int) -> bool:
-    return worst(check_model(model, model_stats(model), pairs, n_frames, n_search)) == "error"
 
 
 def _adjust(task: StageTask, model: Any) -> Adjustment:
@@ -87,7 +81,7 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
     )
 
 
-def _facts(model: Any, adjustment: Adjustment | None, graph: dict[str, Any], n_frames: int, n_search: int) -> Facts:
+def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int) -> Facts:
     stats = model_stats(model)
     params = np.array(next(iter(model.cameras.values())).params)
     return {
@@ -100,7 +94,7 @@ def _facts(model: Any, adjustment: Adjustment | None, graph: dict[str, Any], n_f
         "principal_point_px": params[PRINCIPAL_POINT].tolist(),
         "principal_point_refined": adjustment is not None and adjustment.principal_point.refined,
         "adjustment": None if adjustment is None else _adjustment_facts(adjustment),
-        "checks": [flag.to_dict() for flag in check_model(model, stats, graph, n_frames, n_search)],
+        "checks": [flag.to_dict() for flag in check_model(model, stats, vars(table), n_frames, n_search)],
     }
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
-from core.stage import PIECE_MARK, Facts, stage_of
+from core.stage import Facts, piece_of, stage_of
 from core.timeline.events import EventRow
 
 I32 = NDArray[np.int32]
@@ -27,11 +27,7 @@ class Start:
     @classmethod
     def after(cls, facts: Mapping[str, Facts], piece: int) -> Start:
         """Behind the timelines of all models before `piece`, whose facts are given by task key."""
-        before = [
-            own
-            for key, own in facts.items()
-            if stage_of(key) == "timeline" and int(key.partition(PIECE_MARK)[2] or 0) < piece
-        ]
+        before = [own for key, own in facts.items() if stage_of(key) == "timeline" and piece_of(key) < piece]
         return cls(sum(int(own["n_defects"]) for own in before), sum(int(own["n_events"]) for own in before))
 
     def rows(self, rows: Sequence[DetectionRow]) -> list[DetectionRow]:

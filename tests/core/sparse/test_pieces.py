@@ -6,10 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pycolmap
 import pytest
 
 from core.settings import make_settings
+from core.sparse.cases import Case, run_case
 from core.sparse.pieces import MIN_FRAMES, find_pieces, groups_of
+from core.stage import StageTask
+from core.stages import pieces as stage
 from core.viewgraph import PairTable
 from tests.core.sparse.scene import Scene, center_errors, make_scene, view_graph, write_graph
 
@@ -82,3 +86,17 @@ def test_weak_and_vetoed_pieces_are_none(broken: tuple[Scene, PairTable, Path]) 
     assert [len(group) for group in groups_of(table, left)] == [CUT, N - CUT]
     weak = replace(table, offsets=np.zeros_like(table.offsets))
     assert groups_of(weak, left) == []
+
+
+def test_the_stage_writes_what_the_final_model_lacks(broken: tuple[Scene, PairTable, Path], tmp_path: Path) -> None:
+    _, _, graph = broken
+    first = run_case(Case(graph, 0, CUT, make_settings().mapper, 0)).model
+    (tmp_path / "extend/model").mkdir(parents=True)
+    first.write_binary(tmp_path / "extend/model")
+    out = tmp_path / "out"
+    out.mkdir()
+    inputs = {"graph": graph, "extend": tmp_path / "extend"}
+    facts = {"frames": {"n_frames": N, "n_search": N}}
+    result = stage.run(StageTask("pieces", {}, make_settings(), inputs, facts, tmp_path, None, out))
+    assert result.facts == {"n_pieces": 1, "registered_images": [N - CUT], "registered_first": CUT}
+    assert pycolmap.Reconstruction(out / "1/model").num_reg_images() == N - CUT

@@ -1,4 +1,4 @@
-"""Is the lens found one that exists: field of view, and a distortion that does not fold the image."""
+"""Is the lens found one that exists, and one that the tracks agree on."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from core.flags import Flag
 
 MIN_FOV_DEG = 15.0
 MAX_FOV_DEG = 200.0
+MAX_SHIFT = 0.1
+"""A focal length that moves by more than this share with the choice of tracks may have further to go."""
 MAX_THETA = 2 * np.pi
 """A fisheye polynomial is followed up to here: beyond any lens, so that a far too short focal length is no fold."""
 
@@ -31,6 +33,17 @@ def viewing_angle(radius: float, distortion: NDArray[np.float64]) -> float | Non
     if not len(reached) or (len(folds) and folds[0] < reached[0]):
         return None
     return float(np.interp(radius, r[: reached[0] + 1], theta[: reached[0] + 1]))
+
+
+def check_shift(shift: float) -> Flag | None:
+    """`lens_unsettled` when the better part of the tracks and all of them disagree by more than 10 %.
+
+    Args:
+        shift: relative change of the focal length, from `core.sparse.trimming`.
+    """
+    if abs(shift) <= MAX_SHIFT:
+        return None
+    return Flag("lens_unsettled", "warning", abs(shift), MAX_SHIFT, "relative change of the focal length")
 
 
 def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Flag]:

@@ -202,6 +202,9 @@ class ModelSettings(Group):
     register_rest: bool = option(True, "go on mapping over all remaining frames", source="method")
     join: bool = option(True, "join what is left over through images that both models have", source="method")
     final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="measured")
+    trim_tracks: bool = option(
+        True, "cameras and lens follow from the tracks that agree best, not from all", source="decision 13; thesis off"
+    )
     loss_scale_px: float = option(
         0.0,
         "last adjustment: residuals above this count less (Cauchy); 0 counts squares",

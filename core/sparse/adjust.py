@@ -3,14 +3,15 @@
 The bundle adjustments of the search stop early, which is right for a search and not for a result. COLMAP's
 global refinement (`IncrementalMapper.iterative_global_refinement`) is followed in its order: complete and
 merge tracks, adjust, filter, repeat. It differs in that it always runs to convergence, may let large
-residuals count less (Cauchy's loss: mismatches of up to 4 px pass the filters), and may free the principal point.
+residuals count less (Cauchy's loss: mismatches of up to 4 px pass the filters), may take cameras and lens from the
+better part of the tracks (`core.sparse.trimming`), and may free the principal point.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.sparse.mapper import model_stats
+from core.sparse.trimming import POINT_LOSS_PX, Trimming, keep_agreeing, move_points, set_lens, trim
 
 F64 = NDArray[np.float64]
 
@@ -79,6 +81,8 @@ class Adjustment:
     error_before_px: float
     error_after_px: float
     principal_point: PrincipalPoint
+    trimming: Trimming | None
+    """None when all tracks have a say."""
 
 
 def adjust(
@@ -87,6 +91,7 @@ def adjust(
     options: Any,
     *,
     refine_principal_point: bool,
+    trim_tracks: bool = False,
     loss_scale_px: float = 1.0,
     threads: int = 1,
     progress: Progress = lambda share, message: None,
@@ -98,6 +103,7 @@ def adjust(
         cache: `pycolmap.DatabaseCache` of the same images; its correspondences complete the tracks.
         options: from `core.sparse.mapper.mapper_options`.
         refine_principal_point: free it when it is well determined.
+        trim_tracks: take cameras and lens from the tracks that agree best.
         loss_scale_px: residuals above this count less; 0 counts them all by their squares.
         threads: of Ceres; more than one is nearly but not exactly repeatable.
         progress: called with the share done.
@@ -109,15 +115,29 @@ def adjust(
         # Squares first: they converge in a fifth of the time and leave little to do.
         schedule.append(adjustment_options(False, loss_scale_px, threads))
     free = adjustment_options(True, loss_scale_px, threads)
-    rounds, stable = _refine(work, cache, options, schedule, lambda r: progress(0.6 * r, "bundle adjustment"))
+    rounds, stable = _refine(work, cache, options, schedule, lambda r: progress(0.5 * r, "bundle adjustment"))
+    trimming = None
+    if trim_tracks:
+        progress(0.5, "choosing tracks")
+        trimming = trim(work, lambda scale: adjustment_options(False, scale, threads))
     found = PrincipalPoint(False, "off")
     if refine_principal_point:
-        progress(0.65, "principal point")
-        found = free_principal_point(work, free)
-        if found.refined:
-            more, stable = _refine(work, cache, options, [free], lambda r: progress(0.7 + 0.3 * r, "adjustment"))
-            rounds += more
-    return Adjustment(work, rounds, stable, before, model_stats(work).mean_reprojection_error_px, found)
+        progress(0.7, "principal point")
+        said = pycolmap.Reconstruction(work)
+        if trimming is not None:
+            keep_agreeing(said)
+        found = free_principal_point(said, free)
+        if found.refined and trimming is not None:
+            more = trim(work, lambda scale: adjustment_options(True, scale, threads))
+            trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
+        elif found.refined:
+            further, stable = _refine(work, cache, options, [free], lambda r: progress(0.7 + 0.3 * r, "adjustment"))
+            rounds += further
+    if trimming is not None:
+        progress(0.9, "points")
+        set_lens(work, 4)
+        _retrack(work, cache, options, adjustment_options(False, POINT_LOSS_PX, threads))
+    return Adjustment(work, rounds, stable, before, model_stats(work).mean_reprojection_error_px, found, trimming)
 
 
 def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
@@ -133,15 +153,16 @@ def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
     adjuster = pycolmap.create_default_ceres_bundle_adjuster(options, _whole(trial), trial)
     adjuster.solve()
     camera = next(iter(trial.cameras.values()))
-    start = np.array(next(iter(model.cameras.values())).params)[PRINCIPAL_POINT]
-    shift = np.array(camera.params)[PRINCIPAL_POINT] - start
+    center = camera.principal_point_idxs()
+    start = np.array(next(iter(model.cameras.values())).params)[center]
+    shift = np.array(camera.params)[center] - start
     covariance = pycolmap.estimate_ba_covariance(pycolmap.BACovarianceOptions(), trial, adjuster)
     block = None if covariance is None else covariance.get_other_params_cov(camera.params)
     if block is None or not np.isfinite(block).all():
         return PrincipalPoint(False, "no_covariance", None, _pair(shift))
     error = model_stats(trial).median_reprojection_error_px
     # Ceres takes residuals in px as if their sigma were 1; the median length of a 2D normal is 1.1774 sigma.
-    sigma = np.sqrt(np.diag(block)[PRINCIPAL_POINT].clip(min=0)) * error / 1.1774
+    sigma = np.sqrt(np.diag(block)[center].clip(min=0)) * error / 1.1774
     # What is wrong with a keypoint is much the same in all images of its track: a track is one observation, not many.
     # Taken as many, two rendered clips of narrow motion moved the point 15 px off, 18 of these sigmas.
     sigma *= np.sqrt(max(1.0, model_stats(model).mean_track_length))
@@ -211,6 +232,19 @@ def _refine(
         rounds += 1
     mapper.end_reconstruction(False)
     return rounds, stable
+
+
+def _retrack(model: Any, cache: Any, options: Any, points: Any) -> None:
+    """Complete and filter the tracks in place, with cameras that stay as they are."""
+    triangulation, mapping = options.get_triangulation(), options.get_mapper()
+    mapper = pycolmap.IncrementalMapper(cache)
+    mapper.begin_reconstruction(model)
+    mapper.filter_points(mapping)
+    mapper.complete_and_merge_tracks(triangulation)
+    mapper.retriangulate(triangulation)
+    move_points(model, points)
+    mapper.filter_points(mapping)
+    mapper.end_reconstruction(False)
 
 
 def _whole(model: Any) -> Any:

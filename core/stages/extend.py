@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import pycolmap
 
+from core.checks.lens import check_shift
 from core.checks.model import check_model, is_wrong
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
@@ -75,6 +77,7 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
         open_cache(task.input("graph") / "database.db", names, MIN_MATCHES),
         mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
+        trim_tracks=task.settings.model.trim_tracks,
         loss_scale_px=task.settings.model.loss_scale_px,
         threads=task.settings.compute.threads or 1,  # 0 asks for a result that repeats to the last bit
         progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
@@ -83,6 +86,9 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
 
 def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int) -> Facts:
     stats = model_stats(model)
+    flags = check_model(model, stats, vars(table), n_frames, n_search)
+    if adjustment is not None and adjustment.trimming is not None:
+        flags += filter(None, [check_shift(adjustment.trimming.shift)])
     params = np.array(next(iter(model.cameras.values())).params)
     return {
         "registered_images": stats.registered_images,
@@ -94,12 +100,12 @@ def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames
         "principal_point_px": params[PRINCIPAL_POINT].tolist(),
         "principal_point_refined": adjustment is not None and adjustment.principal_point.refined,
         "adjustment": None if adjustment is None else _adjustment_facts(adjustment),
-        "checks": [flag.to_dict() for flag in check_model(model, stats, vars(table), n_frames, n_search)],
+        "checks": [flag.to_dict() for flag in flags],
     }
 
 
 def _adjustment_facts(adjustment: Adjustment) -> Facts:
-    point = adjustment.principal_point
+    point, trimming = adjustment.principal_point, adjustment.trimming
     return {
         "rounds": adjustment.rounds,
         "stable": adjustment.stable,
@@ -110,4 +116,5 @@ def _adjustment_facts(adjustment: Adjustment) -> Facts:
             "sigma_px": None if point.sigma_px is None else list(point.sigma_px),
             "shift_px": None if point.shift_px is None else list(point.shift_px),
         },
+        "trimming": None if trimming is None else {**asdict(trimming), "shift": trimming.shift},
     }

@@ -1,0 +1,152 @@
+"""Cameras and lens from the tracks that agree best: least trimmed squares.
+
+Shading edges and highlights move with the lamp at the probe. They match, verify and get into tracks, and what they
+ask for is not noise: it all bends the same way. A lens that is free gives way to it, at hardly any cost in
+reprojection error, so no loss function that looks at one residual sees them. What remains is that tracks on the
+metal can agree with each other to a fraction of a pixel and these cannot: adjust to the better part of the tracks,
+look at all of them again, choose anew, until the choice settles. These are the concentration steps of least trimmed
+squares (Rousseeuw 1984; Rousseeuw and Van Driessen 2006), with tracks in place of observations.
+
+The lens has few terms meanwhile, first one and then two: k3, k4 and a second focal length are what gives way most.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pycolmap
+
+KEPT_SHARE = 0.5
+"""Of the tracks, those with the smaller mean error; the breakdown point of the median."""
+MIN_LENGTH = 4
+"""Images of a track that has a say: three can agree by chance."""
+PER_IMAGE = 150
+"""Kept tracks of an image, where it has as many. Fewer hold a camera less, more bring in worse ones: measured."""
+MIN_PER_IMAGE = 40
+"""An image with fewer tracks in the better part keeps its best ones beyond it."""
+
+TERMS = (1, 2)
+"""Radial terms of the lens, stage by stage."""
+MAX_ROUNDS = 12
+"""Of one stage."""
+SETTLED = 0.001
+"""Rounds end when the focal length changed by less than this share."""
+POINT_LOSS_PX = 1.0
+"""Scale of the loss by which points follow their cameras."""
+
+LENSES = {1: "SIMPLE_RADIAL_FISHEYE", 2: "RADIAL_FISHEYE", 4: "OPENCV_FISHEYE"}
+
+Options = Callable[[float], Any]
+"""`BundleAdjustmentOptions` for a scale of Cauchy's loss in px; which parameters are free is the caller's."""
+
+
+@dataclass(frozen=True)
+class Trimming:
+    """What the choice of tracks did to a model."""
+
+    rounds: int
+    kept: int
+    """Tracks that the cameras follow from."""
+    median_error_px: float
+    """Of the kept tracks before the last round, and the scale of its loss."""
+    focal_before_px: float
+    focal_after_px: float
+
+    @property
+    def shift(self) -> float:
+        """Relative change of the focal length: how far the better part and the whole disagree about the lens."""
+        return self.focal_after_px / self.focal_before_px - 1.0
+
+
+def trim(model: Any, options: Options) -> Trimming:
+    """Adjust cameras and lens in place to the better part of the tracks; all points then follow from them.
+
+    Args:
+        model: `pycolmap.Reconstruction` with one fisheye camera, adjusted; its camera comes out as RADIAL_FISHEYE.
+        options: of the adjustments.
+    """
+    before = focal = _focal(model)
+    rounds, kept, scale = 0, 0, 0.0
+    for terms in TERMS:
+        set_lens(model, terms)
+        for _ in range(MAX_ROUNDS):
+            part = pycolmap.Reconstruction(model)
+            kept, scale = keep_agreeing(part)
+            if kept == 0:
+                break
+            _solve(part, options(scale))
+            _take_cameras(model, part)
+            move_points(model, options(POINT_LOSS_PX))
+            rounds += 1
+            last, focal = focal, _focal(model)
+            if abs(focal / last - 1.0) < SETTLED:
+                break
+    return Trimming(rounds, kept, scale, before, focal)
+
+
+def set_lens(model: Any, terms: int) -> None:
+    """Give the one camera of a model so many radial terms in place: 1, 2, or the 4 of OPENCV_FISHEYE."""
+    camera = next(iter(model.cameras.values()))
+    params = np.array(camera.params)
+    center, focal = params[camera.principal_point_idxs()], params[camera.focal_length_idxs()]
+    distortion = np.zeros(4)
+    found = params[camera.extra_params_idxs()]
+    distortion[: len(found)] = found
+    camera.model = getattr(pycolmap.CameraModelId, LENSES[terms])
+    focals = focal.mean().repeat(2 if terms == 4 else 1)
+    camera.params = np.concatenate([focals, center, distortion[:terms]])
+
+
+def keep_agreeing(model: Any) -> tuple[int, float]:
+    """Delete in place all points but the better part; how many remain, and their median error in px.
+
+    Best first, a point stays while one of its images has fewer than `PER_IMAGE`; beyond the better part of all, while
+    one has fewer than `MIN_PER_IMAGE`.
+    """
+    model.update_point_3d_errors()
+    points = [(p.error, i, p.track) for i, p in model.points3D.items()]
+    usable = sorted((p for p in points if np.isfinite(p[0])), key=lambda p: p[:2])
+    limit = float(np.quantile([error for error, _, _ in usable], KEPT_SHARE)) if usable else 0.0
+    counts: Counter[int] = Counter()
+    kept: dict[int, float] = {}
+    for error, point_id, track in usable:
+        images = {element.image_id for element in track.elements}
+        wanted = PER_IMAGE if error <= limit else MIN_PER_IMAGE
+        if len(images) >= MIN_LENGTH and any(counts[image] < wanted for image in images):
+            counts.update(images)
+            kept[point_id] = error
+    for _, point_id, _ in points:
+        if point_id not in kept:
+            model.delete_point3D(point_id)
+    return len(kept), float(np.median(list(kept.values()))) if kept else 0.0
+
+
+def _solve(model: Any, options: Any) -> None:
+    config = pycolmap.BundleAdjustmentConfig()
+    for image_id in sorted(model.reg_image_ids()):
+        config.add_image(image_id)
+    config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
+    pycolmap.create_default_ceres_bundle_adjuster(options, config, model).solve()
+
+
+def move_points(model: Any, options: Any) -> None:
+    """Adjust the points alone in place."""
+    options.refine_focal_length = options.refine_extra_params = options.refine_principal_point = False
+    options.refine_rig_from_world = options.refine_sensor_from_rig = False
+    _solve(model, options)
+
+
+def _take_cameras(model: Any, source: Any) -> None:
+    for camera_id, camera in source.cameras.items():
+        model.camera(camera_id).params = camera.params
+    for image_id in sorted(source.reg_image_ids()):
+        image = source.image(image_id)
+        model.frame(model.image(image_id).frame_id).set_cam_from_world(image.camera_id, image.cam_from_world())
+
+
+def _focal(model: Any) -> float:
+    return float(next(iter(model.cameras.values())).mean_focal_length())

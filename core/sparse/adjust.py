@@ -125,7 +125,7 @@ def adjust(
         progress(0.7, "principal point")
         said = pycolmap.Reconstruction(work)
         if trimming is not None:
-            keep_agreeing(said)
+            keep_agreeing(said, TRIAL_POINTS)
         found = free_principal_point(said, free)
         if found.refined and trimming is not None:
             more = trim(work, lambda scale: adjustment_options(True, scale, threads))

@@ -12,6 +12,7 @@ The lens has few terms meanwhile, first one and then two: k3, k4 and a second fo
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,10 +21,8 @@ from typing import Any
 import numpy as np
 import pycolmap
 
-KEPT_SHARE = 0.5
-"""Of the tracks, those with the smaller mean error; the breakdown point of the median."""
 MIN_LENGTH = 4
-"""Images of a track that has a say: three can agree by chance."""
+"""Images of a track that has a say, where there are enough: three can agree by chance."""
 PER_IMAGE = 150
 """Kept tracks of an image, where it has as many. Fewer hold a camera less, more bring in worse ones: measured."""
 MIN_PER_IMAGE = 40
@@ -101,28 +100,34 @@ def set_lens(model: Any, terms: int) -> None:
     camera.params = np.concatenate([focals, center, distortion[:terms]])
 
 
-def keep_agreeing(model: Any) -> tuple[int, float]:
-    """Delete in place all points but the better part; how many remain, and their median error in px.
+def keep_agreeing(model: Any, per_image: int = PER_IMAGE) -> tuple[int, float]:
+    """Keep of the points, in place, those of the better half that hold the cameras; how many and their median error.
 
-    Best first, a point stays while one of its images has fewer than `PER_IMAGE`; beyond the better part of all, while
-    one has fewer than `MIN_PER_IMAGE`.
+    Best first, a point stays while one of its images has fewer than `per_image`; beyond the better part of all, and
+    short ones after all others, while one has fewer than `MIN_PER_IMAGE`: every camera has to be held.
     """
     model.update_point_3d_errors()
-    points = [(p.error, i, p.track) for i, p in model.points3D.items()]
-    usable = sorted((p for p in points if np.isfinite(p[0])), key=lambda p: p[:2])
-    limit = float(np.quantile([error for error, _, _ in usable], KEPT_SHARE)) if usable else 0.0
+    noise = {point_id: _noise(point) for point_id, point in model.points3D.items()}
+    short = {point_id: point.track.length() < MIN_LENGTH for point_id, point in model.points3D.items()}
+    usable = [point_id for point_id, error in noise.items() if np.isfinite(error)]
+    limit = float(np.median([noise[point_id] for point_id in usable])) if usable else 0.0
     counts: Counter[int] = Counter()
-    kept: dict[int, float] = {}
-    for error, point_id, track in usable:
-        images = {element.image_id for element in track.elements}
-        wanted = PER_IMAGE if error <= limit else MIN_PER_IMAGE
-        if len(images) >= MIN_LENGTH and any(counts[image] < wanted for image in images):
+    kept: set[int] = set()
+    for point_id in sorted(usable, key=lambda i: (short[i], noise[i], i)):
+        images = {element.image_id for element in model.point3D(point_id).track.elements}
+        wanted = per_image if noise[point_id] <= limit and not short[point_id] else MIN_PER_IMAGE
+        if any(counts[image] < wanted for image in images):
             counts.update(images)
-            kept[point_id] = error
-    for _, point_id, _ in points:
-        if point_id not in kept:
-            model.delete_point3D(point_id)
-    return len(kept), float(np.median(list(kept.values()))) if kept else 0.0
+            kept.add(point_id)
+    for point_id in noise.keys() - kept:
+        model.delete_point3D(point_id)
+    return len(kept), float(np.median([noise[point_id] for point_id in kept])) if kept else 0.0
+
+
+def _noise(point: Any) -> float:
+    """Mean error in px, of which the fit of the point itself has taken a share: the larger, the shorter the track."""
+    observed = 2 * point.track.length()
+    return float(point.error) * math.sqrt(observed / (observed - 3.0))
 
 
 def _solve(model: Any, options: Any) -> None:

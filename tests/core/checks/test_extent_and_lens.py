@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from core.checks.extent import check_coverage, check_points, check_reprojection
-from core.checks.lens import check_lens, fisheye_radius, viewing_angle
+from core.checks.lens import check_lens, check_shift, fisheye_radius, viewing_angle
 
 
 def codes(flags):
@@ -33,6 +33,13 @@ def test_field_of_view_outside_of_15_to_200_degrees(focal, code):
 def test_a_polynomial_that_turns_back_inside_the_image_is_flagged():
     flags = check_lens(540, 360, np.array([566.0, 538, 270, 180, 0.6, -0.55, -8.8, 5.0]))
     assert codes(flags) == ["distortion_implausible"]
+
+
+def test_a_focal_length_that_moves_with_the_choice_of_tracks_is_flagged():
+    assert check_shift(0.09) is None
+    assert check_shift(-0.09) is None
+    flag = check_shift(-0.2)
+    assert (flag.code, flag.severity, flag.value) == ("lens_unsettled", "warning", 0.2)
 
 
 def test_viewing_angle_inverts_the_polynomial():

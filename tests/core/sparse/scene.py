@@ -32,17 +32,25 @@ class Scene:
     centers: npt.NDArray[np.float64]
 
 
-def make_scene(n_frames: int = 24, n_points: int = 900, *, step: float = 0.12, noise_px: float = 0.3) -> Scene:
-    """Frames that see a bumpy wall from about 2 away; with ``step=0`` the camera only turns."""
+def make_scene(
+    n_frames: int = 24, n_points: int = 900, *, step: float = 0.12, noise_px: float = 0.3, drift: float = 0.0
+) -> Scene:
+    """Frames that see a bumpy wall from about 2 away; with ``step=0`` the camera only turns.
+
+    Every other point is a highlight: it follows the camera over the wall, the more the farther aside it is.
+    """
     rng = np.random.default_rng(5)
     length = max(step * n_frames, 1.0)
     points = rng.uniform([-2.0, -1.6, 1.6], [length + 2.0, 1.6, 2.6], (n_points, 3))
     descriptors = rng.normal(size=(n_points, 32))
     descriptors /= np.linalg.norm(descriptors, axis=1, keepdims=True)
+    follow = drift * np.linspace(0.0, 1.0, n_points) * (np.arange(n_points) % 2 > 0)
     features, seen, centers = [], [], []
     for frame in range(n_frames):
         center = np.array([step * frame, 0.15 * np.sin(frame / 4) * (step > 0), 0.2 * np.sin(frame / 6) * (step > 0)])
-        xy = project((points - center) @ _turn(0.15 * np.sin(frame / 5), 0.01 * frame).T)
+        aside = (center - points) * [1.0, 1.0, 0.0]
+        moved = points + (follow * (aside**2).sum(axis=1))[:, None] * aside
+        xy = project((moved - center) @ _turn(0.15 * np.sin(frame / 5), 0.01 * frame).T)
         visible = np.flatnonzero(((xy > 0) & (xy < [WIDTH, HEIGHT])).all(axis=1))
         visible = rng.permutation(visible)
         keypoints = (xy[visible] + rng.normal(0, noise_px, (len(visible), 2))).astype(np.float32)

@@ -201,6 +201,9 @@ class ModelSettings(Group):
     )
     register_rest: bool = option(True, "go on mapping over all remaining frames", source="method")
     join: bool = option(True, "join what is left over through images that both models have", source="method")
+    drop_loose: bool = option(
+        True, "take off what hangs on the model by hardly any points", source="measured; thesis off"
+    )
     final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="measured")
     trim_tracks: bool = option(
         True, "cameras and lens follow from the tracks that agree best, not from all", source="decision 13; thesis off"

@@ -14,6 +14,7 @@ from core.checks.model import check_model, is_wrong
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
+from core.sparse.loose import drop_loose_ends
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from core.stage import Facts, StageResult, StageTask
 from core.viewgraph import PairTable, read_table
@@ -55,6 +56,7 @@ def run(task: StageTask) -> StageResult:
             seed=task.settings.seed,
             is_wrong=vetoed,
         )
+    model, loose = drop_loose_ends(model, n_search) if settings.drop_loose else (model, [])
     adjustment = None
     if settings.final_adjustment:
         adjustment = _adjust(task, model)
@@ -67,7 +69,7 @@ def run(task: StageTask) -> StageResult:
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.piece else n_frames
     facts = _facts(model, adjustment, table, offered, n_search)
-    return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts]})
+    return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": loose})
 
 
 def _adjust(task: StageTask, model: Any) -> Adjustment:

@@ -1,0 +1,60 @@
+"""Ends that hang on a model by next to nothing: taken off before they are believed.
+
+Frames of a dark stretch, or of another part of the scene, can be registered by a few chance matches. They then sit
+anywhere, and what was right before is a part of a model that is wrong as a whole.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pycolmap
+
+from core.checks.joins import WEAK_POINTS, points_across, tracks_of
+
+WEAK_SHARE = 0.05
+"""A cut with fewer than this share of the points that reach across a typical cut is weak too."""
+MIN_OBSERVATIONS = 20
+"""An image that is out of the sequence's order stays when it sees so many of the points that are left."""
+
+
+def drop_loose_ends(model: Any, n_search: int) -> tuple[Any, list[int]]:
+    """The part of a model between weak cuts that has the most images, and the frames taken off.
+
+    Args:
+        model: `pycolmap.Reconstruction`, image_id = index + 1; not changed.
+        n_search: frames from this on are out of order.
+
+    Returns:
+        The model itself when nothing is loose, else a copy.
+    """
+    frames = np.array(sorted(image_id - 1 for image_id in model.reg_image_ids()), np.int64)
+    ordered = frames[frames < n_search]
+    if len(ordered) < 2:
+        return model, []
+    # Whether they move or not: while the rotor stands, nothing does.
+    across = points_across(tracks_of(model), ordered, 0.0)
+    weak = across < max(WEAK_POINTS, WEAK_SHARE * float(np.median(across)))
+    parts = np.split(ordered, np.flatnonzero(weak) + 1)
+    if len(parts) == 1:
+        return model, []
+    kept = max(parts, key=len)
+    work = pycolmap.Reconstruction(model)
+    dropped = sorted(set(ordered.tolist()) - set(kept.tolist()))
+    _take_off(work, dropped)
+    # What sees only the ends goes with them.
+    held = set().union(*(_points_of(work, frame) for frame in kept.tolist()))
+    others = frames[frames >= n_search].tolist()
+    lost = [frame for frame in others if len(_points_of(work, frame) & held) < MIN_OBSERVATIONS]
+    _take_off(work, lost)
+    return work, sorted(dropped + lost)
+
+
+def _points_of(model: Any, frame: int) -> set[int]:
+    return {point.point3D_id for point in model.image(frame + 1).get_observation_points2D()}
+
+
+def _take_off(model: Any, frames: list[int]) -> None:
+    for frame in frames:
+        model.deregister_frame(model.image(frame + 1).frame_id)

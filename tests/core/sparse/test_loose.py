@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+import pycolmap
+import pytest
+
+from core.settings.groups import MapperSettings
+from core.sparse.cases import Case, run_case
+from core.sparse.loose import drop_loose_ends
+from tests.core.sparse.scene import make_scene, view_graph, write_graph
+
+N, CUT = 24, 18
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory):
+    scene = make_scene(N)
+    graph = write_graph(tmp_path_factory.mktemp("loose") / "graph", scene, view_graph(scene))
+    return run_case(Case(graph, 0, N, MapperSettings(), 0)).model
+
+
+def joined_by(model, count: int, cut: int = CUT):
+    """A copy in which so many points are seen on both sides of the cut."""
+    work = pycolmap.Reconstruction(model)
+    sides = {i: {e.image_id - 1 >= cut for e in point.track.elements} for i, point in work.points3D.items()}
+    for point_id in [i for i, side in sorted(sides.items()) if len(side) == 2][count:]:
+        work.delete_point3D(point_id)
+    return work
+
+
+def frames(model) -> list[int]:
+    return sorted(image_id - 1 for image_id in model.reg_image_ids())
+
+
+def test_a_whole_model_stays_as_it_is(model):
+    same, dropped = drop_loose_ends(model, N)
+    assert same is model
+    assert dropped == []
+
+
+def test_the_smaller_side_of_a_weak_cut_is_taken_off(model):
+    work = joined_by(model, 12)
+    left, dropped = drop_loose_ends(work, N)
+    assert dropped == list(range(CUT, N))
+    assert frames(left) == list(range(CUT))
+    assert frames(work) == list(range(N))
+    assert {e.image_id - 1 for point in left.points3D.values() for e in point.track.elements} == set(range(CUT))
+    assert left.num_points3D() > 100
+
+
+def test_what_is_out_of_order_stays_with_what_it_sees(model):
+    """The frames from 18 on are out of order and see what the frames before them see."""
+    _, dropped = drop_loose_ends(joined_by(model, 0, cut=5), CUT)
+    assert set(range(4)) <= set(dropped) <= set(range(10))
+    _, dropped = drop_loose_ends(joined_by(model, 0, cut=13), CUT)
+    assert set(range(14, N)) <= set(dropped) <= set(range(8, N))

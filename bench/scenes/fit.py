@@ -15,13 +15,19 @@ from bench.accuracy.confidence import N_BINS, auroc, calibration_error
 from bench.accuracy.placement import place_detections
 from bench.accuracy.result import load_result
 from bench.accuracy.truth import load_truth
-from core.mapping.confidence import Parts
+from core.mapping.confidence import WEIGHTS, Parts
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SHRINKAGE = 1.0
 """Variance that a weight is expected to have; the features are of order one."""
+OF_THE_MODEL = ("doubts",)
+"""Features that all rows of a scene share: a handful of scenes does not fit them. Their weights are set by hand, and
+a scene with hardly a right place, which is the model's fault and not its rows', does not fit the others."""
+LEAST_RIGHT = 0.1
+FOR = ("consensus", "support", "label", "share", "cosine", "lead", "sparse", "depth", "score", "peers")
+AGAINST = ("alone", "cloud", "offset", "doubts")
 _STEPS = 60
 
 
@@ -72,27 +78,43 @@ def _parts(row: dict[str, float | int | None]) -> Parts:
         score=row["score"],
         peers=int(row["peers"] or 0),
         offset=float(row["offset"] or 0.0),
+        doubts=int(row["model_doubts"] or 0),
     )
 
 
 def fit(samples: Sequence[Sample]) -> dict[str, float]:
-    """Weights by name, every scene counting the same: penalised maximum likelihood by Newton's method."""
-    used = [sample for sample in samples if len(sample.right)]
+    """Weights by name, every scene counting the same: penalised maximum likelihood by Newton's method.
+
+    What can only speak against a place never speaks for it, and the other way round (`FOR`, `AGAINST`): where the
+    rows of a few scenes say so by chance, the weight is 0.
+    """
+    used = [sample for sample in samples if len(sample.right) and sample.right.mean() > LEAST_RIGHT]
     x = np.concatenate([sample.features for sample in used])
     y = np.concatenate([sample.right for sample in used]).astype(np.float64)
     weight = np.concatenate([np.full(len(s.right), len(y) / (len(used) * len(s.right))) for s in used])
     penalty = np.full(x.shape[1], 1.0 / SHRINKAGE)
     penalty[used[0].names.index("constant")] = 1e-3
-    w = np.zeros(x.shape[1])
+    w = np.array([WEIGHTS[name] if name in OF_THE_MODEL else 0.0 for name in used[0].names])
+    free = np.array([name not in OF_THE_MODEL for name in used[0].names])
+    signs = np.array([(name in FOR) - (name in AGAINST) for name in used[0].names])
+    _climb(w, free, x, y, weight, penalty)
+    while (strange := free & (w * signs < 0)).any():
+        free &= ~strange
+        w[strange] = 0.0
+        _climb(w, free, x, y, weight, penalty)
+    return {name: round(float(value), 3) for name, value in zip(used[0].names, w, strict=True)}
+
+
+def _climb(w: F64, free: Flags, x: F64, y: F64, weight: F64, penalty: F64) -> None:
+    """Newton's method in place over the free weights."""
     for _ in range(_STEPS):
         p = 1.0 / (1.0 + np.exp(-np.clip(x @ w, -30, 30)))
         gradient = x.T @ (weight * (y - p)) - penalty * w
         curvature = (x * (weight * p * (1 - p))[:, None]).T @ x + np.diag(penalty)
-        step = np.linalg.solve(curvature, gradient)
-        w = w + step
+        step = np.linalg.solve(curvature[np.ix_(free, free)], gradient[free])
+        w[free] += step
         if float(np.abs(step).max()) < 1e-9:
             break
-    return {name: round(float(value), 3) for name, value in zip(used[0].names, w, strict=True)}
 
 
 def held_out(samples: Sequence[Sample]) -> tuple[F64, Flags]:

@@ -2,7 +2,7 @@
 
 A logistic model over a few parts that every placement has. The weights were fitted on rendered scenes of
 the calibration family (`bladeatlas-bench scenes --family calibration`), none of which is in the suite that
-results are reported on; docs/accuracy.md has the reliability diagram.
+results are reported on; docs/accuracy.md has the reliability diagram. That of `doubts` is set by hand.
 """
 
 from __future__ import annotations
@@ -42,6 +42,8 @@ class Parts:
     """Further observations of the same defect."""
     offset: float = 0.0
     """Distance from the defect's fused place in radii of the detection's patch."""
+    doubts: int = 0
+    """Warnings of the checks about the model: where it is bent, everything agrees and is wrong together."""
 
     def features(self) -> dict[str, float]:
         """The numbers that the weights multiply, all of order one."""
@@ -62,6 +64,7 @@ class Parts:
             "score": 0.0 if self.score is None else self.score - 0.5,
             "peers": log(1.0 + self.peers),
             "offset": min(self.offset, 3.0),
+            "doubts": float(min(self.doubts, 3)),
         }
 
     def to_dict(self) -> dict[str, float | int | None]:
@@ -79,25 +82,27 @@ class Parts:
             "score": self.score,
             "peers": self.peers,
             "offset": round(self.offset, 4),
+            "model_doubts": self.doubts,
         }
 
 
 WEIGHTS: Weights = {
-    "constant": 1.0,
-    "consensus": 0.6,
-    "support": 0.6,
-    "alone": -1.0,
-    "unseen": 0.0,
-    "label": 0.5,
-    "share": 0.5,
-    "cosine": 0.5,
-    "lead": 1.0,
-    "sparse": 1.0,
-    "depth": 1.0,
-    "cloud": -1.0,
-    "score": 1.0,
-    "peers": 0.3,
-    "offset": -0.7,
+    "constant": -0.623,
+    "consensus": 1.044,
+    "support": 0.657,
+    "alone": -0.276,
+    "unseen": -0.219,
+    "label": 0.827,
+    "share": 0.0,
+    "cosine": 0.0,
+    "lead": 0.0,
+    "sparse": 0.0,
+    "depth": 0.508,
+    "cloud": 0.0,
+    "score": 0.0,
+    "peers": 2.121,
+    "offset": 0.0,
+    "doubts": -2.0,
 }
 
 

@@ -64,8 +64,9 @@ def from_sparse_points(scene: Scene, sight: Sight) -> Estimate | None:
 def _nearest_surface(points: F64, distance: F64, scene: Scene, sight: Sight, rung: str) -> Estimate:
     """Mean of the points about as far away as the nearest quarter of them."""
     x1, y1, x2, y2 = sight.box_px
-    size = float(np.quantile(distance, NEAR_SHARE)) * max(x2 - x1, y2 - y1) / scene.focal_px
-    kept = np.abs(distance - np.quantile(distance, NEAR_SHARE)) <= size
+    # One of the distances, so that at least its point is kept: between two far apart there is none.
+    near = float(np.quantile(distance, NEAR_SHARE, method="lower"))
+    kept = np.abs(distance - near) <= near * max(x2 - x1, y2 - y1) / scene.focal_px
     place = points[kept].mean(axis=0)
     return Estimate(place, rung, float(np.linalg.norm(points[kept] - place, axis=1).mean()))
 

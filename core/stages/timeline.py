@@ -12,7 +12,7 @@ from core.mapping.coloring import blend
 from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
 from core.report.tables import read_json, write_json
-from core.stage import StageResult, StageTask
+from core.stage import StageResult, StageTask, key_of
 from core.stages.map_defects import open_scene_of, world_comments
 from core.surface.glb import vertex_normals, write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
@@ -49,7 +49,7 @@ def _by_surface(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
     observations = read_observations(task.input("map_defects"))
     scene, times = open_scene_of(task)
     task.report(1, 4, "telling defects apart")
-    found = defects.find_defects(observations, scene, times.time_of_index)
+    found = defects.find_defects(observations, scene, times.time_of_index, _doubts(task))
     events = defects.event_rows(found, times.time_of_index)
     task.report(2, 4, "colouring the surface")
     weight, vertex_defect = paint_defects(mesh, found, task.settings.mapping, task.threads)
@@ -68,6 +68,12 @@ def _by_surface(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
         "n_defects": len(found.defects),
         "n_unconfirmed": found.unconfirmed,
     }
+
+
+def _doubts(task: StageTask) -> int:
+    """Warnings of the checks about the model that the places lie on."""
+    checks = task.facts.get(key_of("extend", task.piece), {}).get("checks", ())
+    return len({check["code"] for check in checks if check["severity"] != "info"})
 
 
 def _by_clusters(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:

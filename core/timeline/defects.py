@@ -59,13 +59,16 @@ class Found:
     """Groups of mapped detections that other frames speak against too much for a record."""
 
 
-def find_defects(observations: Sequence[Observation], scene: Scene, times_s: Mapping[int, float]) -> Found:
+def find_defects(
+    observations: Sequence[Observation], scene: Scene, times_s: Mapping[int, float], doubts: int = 0
+) -> Found:
     """Group the observations of a model into defects.
 
     Args:
         observations: in input order, all of them.
         scene: of the model.
         times_s: of its registered frames, by frame index.
+        doubts: warnings of the checks about the model.
     """
     looked = set(scene.views.frame_index[scene.frames.rows].tolist())
     groups = merge_alike(group_observations(observations), observations, scene.views, scene.crop)
@@ -75,7 +78,7 @@ def find_defects(observations: Sequence[Observation], scene: Scene, times_s: Map
     updated = list(observations)
     for defect in candidates:
         for member in defect.members:
-            updated[member] = _judged(updated[member], defect)
+            updated[member] = _judged(updated[member], defect, doubts)
     defects = tuple(defect for defect in candidates if defect.exists >= MIN_EXISTENCE)
     for number, defect in enumerate(defects):
         for member in defect.members:
@@ -127,13 +130,13 @@ def _recall(defects: Sequence[Defect]) -> float:
     return sum(defect.k for defect in known) / total if total else 0.5
 
 
-def _judged(one: Observation, defect: Defect) -> Observation:
+def _judged(one: Observation, defect: Defect, doubts: int) -> Observation:
     """With its confidence, now that its peers are known."""
     if one.parts is None:
         return one
     place = np.array((one.row.x, one.row.y, one.row.z))
     offset = float(np.linalg.norm(place - defect.place)) / max(one.radius, 1e-12)
-    parts = replace(one.parts, peers=len(defect.members) - 1, offset=offset)
+    parts = replace(one.parts, peers=len(defect.members) - 1, offset=offset, doubts=doubts)
     return replace(one, parts=parts, row=replace(one.row, confidence=round(confidence(parts), 4)))
 
 

@@ -34,6 +34,18 @@ def test_a_fit_finds_the_weights_that_made_the_rows() -> None:
     assert [weights[name] for name in NAMES] == pytest.approx(TRUE.tolist(), abs=0.15)
 
 
+def test_what_speaks_for_a_place_is_never_held_against_it() -> None:
+    turned = [Sample(one.scene, one.features * [1.0, 1.0, -1.0], one.right, NAMES) for one in samples()]
+    weights = fit(turned)
+    assert weights["depth"] == 0.0
+    assert weights["support"] > 1.0
+
+
+def test_a_scene_without_a_right_place_fits_nothing() -> None:
+    failed = Sample("failed", samples(1)[0].features, np.zeros(800, bool), NAMES)
+    assert fit([*samples(), failed]) == fit(samples())
+
+
 def test_every_scene_counts_the_same() -> None:
     small, large = samples(1, 60)[0], samples(1, 3000)[0]
     flipped = Sample("flipped", large.features, ~large.right, NAMES)

@@ -10,6 +10,7 @@ import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
 import pytest
 
+from core.flags import Flag
 from core.mapping.store import read_observations
 from core.settings import make_settings
 from core.stage import Facts, StageTask
@@ -54,9 +55,10 @@ def _write(path: Path, value: object) -> None:
     path.write_text(json.dumps(value), encoding="utf-8")
 
 
-def run_both(inputs: Path, out: Path) -> dict[str, Facts]:
+def run_both(inputs: Path, out: Path, codes: tuple[str, ...] = ()) -> dict[str, Facts]:
+    """With warnings of the checks of the model."""
     folders = {path.name: path for path in inputs.iterdir()}
-    facts: dict[str, Facts] = {}
+    facts: dict[str, Facts] = {"extend": {"checks": [Flag(code, "warning").to_dict() for code in codes]}}
     for name, stage in (("map_defects", map_defects), ("timeline", timeline)):
         folders[name] = out / name
         folders[name].mkdir(parents=True)
@@ -86,6 +88,13 @@ def test_files_and_facts(inputs: Path, tmp_path: Path) -> None:
     assert (mesh.extra["defect_id"][away] == -1).all()
     points = read_mesh(tmp_path / "map_defects" / "defect_points.ply")
     assert len(points.vertices) == facts["map_defects"]["unique_support_points"] > 4
+
+
+def test_confidence_knows_what_the_checks_say_of_the_model(inputs: Path, tmp_path: Path) -> None:
+    for name, codes in (("sure", ()), ("doubted", ("lens_unsettled", "coverage_low"))):
+        run_both(inputs, tmp_path / name, codes)
+        rows = json.loads((tmp_path / name / "timeline" / "confidence.json").read_text())
+        assert {row["parts"]["model_doubts"] for row in rows} == {len(codes)}
 
 
 def test_observations_come_back_as_they_were(inputs: Path, tmp_path: Path) -> None:

@@ -103,6 +103,16 @@ def test_without_surface_the_depth_map_then_the_sparse_points_give_an_estimate()
     assert (nothing.row.outcome, nothing.row.reason, nothing.row.x) == ("unplaced", "off_surface", None)
 
 
+def test_sparse_points_at_two_depths_give_one_of_them_and_never_nothing() -> None:
+    """The quartile of few depths lies between two of them; nothing is near it."""
+    hole = plates.plate((2.0, 3.0), (-2.0, 2.0), NEAR)
+    points = np.array(ON_NEAR) + np.array([[0, 0, -2.0], [0, 0, 0], [0.01, 0, 2.0]])
+    xy = np.array([plates.pixel(ON_NEAR, 3)] * 3)
+    one = placed([detection(0, ON_NEAR, 3)], mesh=hole, sparse={3: (xy, points)})[0]
+    assert (one.row.outcome, one.row.rung) == ("approximate", "sparse")
+    assert xyz(one) == pytest.approx(points[0])
+
+
 def test_the_back_of_a_surface_is_no_place() -> None:
     near = plates.plate((-3.0, 0.0), (-2.0, 2.0), NEAR)
     back = type(near)(near.vertices, np.ascontiguousarray(near.faces[:, ::-1]))

@@ -58,7 +58,8 @@ PARTS = Parts(12, 3, 2, 0.6, 0.5, 0.1, 0.5, 0.6, 2.0, 0.5, 2, 0.7)
     [
         ({"support": 8}, {"support": 1, "same_label": 1}),
         ({"depth": 1.0}, {"depth": 0.1}),
-        ({"offset": 0.1}, {"offset": 2.0}),
+        ({"support": 5, "same_label": 5}, {"support": 5, "same_label": 0}),
+        ({"doubts": 0}, {"doubts": 2}),
         ({"peers": 9}, {"peers": 0}),
     ],
 )

@@ -15,19 +15,17 @@ from bench.accuracy.confidence import N_BINS, auroc, calibration_error
 from bench.accuracy.placement import place_detections
 from bench.accuracy.result import load_result
 from bench.accuracy.truth import load_truth
-from core.mapping.confidence import WEIGHTS, Parts
+from core.mapping.confidence import Parts, model_right
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SHRINKAGE = 1.0
 """Variance that a weight is expected to have; the features are of order one."""
-OF_THE_MODEL = ("doubts",)
-"""Features that all rows of a scene share: a handful of scenes does not fit them. Their weights are set by hand, and
-a scene with hardly a right place, which is the model's fault and not its rows', does not fit the others."""
 LEAST_RIGHT = 0.1
+"""A scene with a smaller share of right places fits no weights: that is the model's fault and not its rows'."""
 FOR = ("consensus", "support", "label", "share", "cosine", "lead", "sparse", "depth", "score", "peers")
-AGAINST = ("alone", "cloud", "offset", "doubts")
+AGAINST = ("alone", "cloud", "offset")
 _STEPS = 60
 
 
@@ -41,6 +39,8 @@ class Sample:
     right: Flags
     """(n,) a true defect, not wrong."""
     names: tuple[str, ...]
+    model: float = 1.0
+    """Probability that the run's model is right, by its checks."""
 
 
 def collect(bench_folder: Path, scene: str, column: str = "default") -> Sample:
@@ -50,16 +50,16 @@ def collect(bench_folder: Path, scene: str, column: str = "default") -> Sample:
     alignments = {n: umeyama(m.centers, truth.centers[m.source_indices]) for n, m in result.models.items()}
     placements = place_detections(result.detections, truth, alignments)
     known = {row["id"]: row["parts"] for row in json.loads((out / "mapping" / "confidence.json").read_text())}
-    rows, right = [], []
+    rows, right, model = [], [], 1.0
     names: tuple[str, ...] = ()
     for row, placement in zip(result.detections, placements, strict=True):
         parts = known.get(row["id"])
         if placement.mapped and parts is not None:
-            features = _parts(parts).features()
+            features, model = _parts(parts).features(), model_right(int(parts["model_doubts"]))
             names = tuple(features)
             rows.append([features[name] for name in names])
             right.append(placement.right)
-    return Sample(scene, np.array(rows, np.float64).reshape(len(rows), -1), np.array(right, bool), names)
+    return Sample(scene, np.array(rows, np.float64).reshape(len(rows), -1), np.array(right, bool), names, model)
 
 
 def _parts(row: dict[str, float | int | None]) -> Parts:
@@ -78,7 +78,6 @@ def _parts(row: dict[str, float | int | None]) -> Parts:
         score=row["score"],
         peers=int(row["peers"] or 0),
         offset=float(row["offset"] or 0.0),
-        doubts=int(row["model_doubts"] or 0),
     )
 
 
@@ -94,8 +93,7 @@ def fit(samples: Sequence[Sample]) -> dict[str, float]:
     weight = np.concatenate([np.full(len(s.right), len(y) / (len(used) * len(s.right))) for s in used])
     penalty = np.full(x.shape[1], 1.0 / SHRINKAGE)
     penalty[used[0].names.index("constant")] = 1e-3
-    w = np.array([WEIGHTS[name] if name in OF_THE_MODEL else 0.0 for name in used[0].names])
-    free = np.array([name not in OF_THE_MODEL for name in used[0].names])
+    w, free = np.zeros(x.shape[1]), np.ones(x.shape[1], bool)
     signs = np.array([(name in FOR) - (name in AGAINST) for name in used[0].names])
     _climb(w, free, x, y, weight, penalty)
     while (strange := free & (w * signs < 0)).any():
@@ -125,7 +123,7 @@ def held_out(samples: Sequence[Sample]) -> tuple[F64, Flags]:
             continue
         weights = fit([other for j, other in enumerate(samples) if j != k])
         score = sample.features @ np.array([weights[name] for name in sample.names])
-        stated.append(np.clip(1.0 / (1.0 + np.exp(-score)), 0.01, 0.99))
+        stated.append(np.clip(sample.model / (1.0 + np.exp(-score)), 0.01, 0.99))
         right.append(sample.right)
     return np.concatenate(stated), np.concatenate(right)
 

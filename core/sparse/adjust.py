@@ -19,7 +19,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.sparse.mapper import model_stats
-from core.sparse.trimming import POINT_LOSS_PX, Trimming, keep_agreeing, move_points, set_lens, trim
+from core.sparse.trimming import POINT_LOSS_PX, Trimming, keep_agreeing, move_points, set_lens, trim, whole
 
 F64 = NDArray[np.float64]
 
@@ -150,7 +150,7 @@ def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
     trial = pycolmap.Reconstruction(model)
     keep_covering_points(trial, TRIAL_POINTS)
     before = model_stats(trial).median_reprojection_error_px
-    adjuster = pycolmap.create_default_ceres_bundle_adjuster(options, _whole(trial), trial)
+    adjuster = pycolmap.create_default_ceres_bundle_adjuster(options, whole(trial), trial)
     adjuster.solve()
     camera = next(iter(trial.cameras.values()))
     center = camera.principal_point_idxs()
@@ -245,15 +245,6 @@ def _retrack(model: Any, cache: Any, options: Any, points: Any) -> None:
     move_points(model, points)
     mapper.filter_points(mapping)
     mapper.end_reconstruction(False)
-
-
-def _whole(model: Any) -> Any:
-    """Everything of a model, its gauge held by two cameras."""
-    config = pycolmap.BundleAdjustmentConfig()
-    for image_id in sorted(model.reg_image_ids()):
-        config.add_image(image_id)
-    config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
-    return config
 
 
 def _pair(values: F64) -> tuple[float, float]:

@@ -130,12 +130,17 @@ def _noise(point: Any) -> float:
     return float(point.error) * math.sqrt(observed / (observed - 3.0))
 
 
-def _solve(model: Any, options: Any) -> None:
+def whole(model: Any) -> Any:
+    """`BundleAdjustmentConfig` of everything in a model, its gauge held by two cameras."""
     config = pycolmap.BundleAdjustmentConfig()
     for image_id in sorted(model.reg_image_ids()):
         config.add_image(image_id)
     config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
-    pycolmap.create_default_ceres_bundle_adjuster(options, config, model).solve()
+    return config
+
+
+def _solve(model: Any, options: Any) -> None:
+    pycolmap.create_default_ceres_bundle_adjuster(options, whole(model), model).solve()
 
 
 def move_points(model: Any, options: Any) -> None:

@@ -39,8 +39,8 @@ class Sample:
     right: Flags
     """(n,) a true defect, not wrong."""
     names: tuple[str, ...]
-    model: float = 1.0
-    """Probability that the run's model is right, by its checks."""
+    model: F64 | float = 1.0
+    """(n,) probability that the model is right, by its checks; a run may have several."""
 
 
 def collect(bench_folder: Path, scene: str, column: str = "default") -> Sample:
@@ -50,16 +50,18 @@ def collect(bench_folder: Path, scene: str, column: str = "default") -> Sample:
     alignments = {n: umeyama(m.centers, truth.centers[m.source_indices]) for n, m in result.models.items()}
     placements = place_detections(result.detections, truth, alignments)
     known = {row["id"]: row["parts"] for row in json.loads((out / "mapping" / "confidence.json").read_text())}
-    rows, right, model = [], [], 1.0
+    rows, right, model = [], [], []
     names: tuple[str, ...] = ()
     for row, placement in zip(result.detections, placements, strict=True):
         parts = known.get(row["id"])
         if placement.mapped and parts is not None:
-            features, model = _parts(parts).features(), model_right(int(parts["model_doubts"]))
+            features = _parts(parts).features()
+            model.append(model_right(int(parts["model_doubts"])))
             names = tuple(features)
             rows.append([features[name] for name in names])
             right.append(placement.right)
-    return Sample(scene, np.array(rows, np.float64).reshape(len(rows), -1), np.array(right, bool), names, model)
+    x = np.array(rows, np.float64).reshape(len(rows), -1)
+    return Sample(scene, x, np.array(right, bool), names, np.array(model, np.float64))
 
 
 def _parts(row: dict[str, float | int | None]) -> Parts:

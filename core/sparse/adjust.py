@@ -9,7 +9,6 @@ better part of the tracks (`core.sparse.trimming`), and may free the principal p
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,7 +18,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.sparse.mapper import model_stats
-from core.sparse.trimming import POINT_LOSS_PX, Trimming, keep_agreeing, move_points, set_lens, trim, whole
+from core.sparse.trimming import POINT_LOSS_PX, Trimming, keep_agreeing, keep_first, move_points, set_lens, trim, whole
 
 F64 = NDArray[np.float64]
 
@@ -180,14 +179,8 @@ def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
 
 def keep_covering_points(model: Any, per_image: int) -> None:
     """Delete points in place, all but the longest tracks that give every image `per_image` of them (if it has them)."""
-    points = sorted(model.points3D.items(), key=lambda item: (-item[1].track.length(), item[0]))
-    counts: Counter[int] = Counter()
-    for point_id, point in points:
-        images = {element.image_id for element in point.track.elements}
-        if all(counts[image] >= per_image for image in images):
-            model.delete_point3D(point_id)
-        else:
-            counts.update(images)
+    order = sorted(model.point3D_ids(), key=lambda i: (-model.point3D(i).track.length(), i))
+    keep_first(model, order, lambda _: per_image)
 
 
 def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> Any:

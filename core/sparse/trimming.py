@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -111,17 +111,26 @@ def keep_agreeing(model: Any, per_image: int = PER_IMAGE) -> tuple[int, float]:
     short = {point_id: point.track.length() < MIN_LENGTH for point_id, point in model.points3D.items()}
     usable = [point_id for point_id, error in noise.items() if np.isfinite(error)]
     limit = float(np.median([noise[point_id] for point_id in usable])) if usable else 0.0
-    counts: Counter[int] = Counter()
-    kept: set[int] = set()
-    for point_id in sorted(usable, key=lambda i: (short[i], noise[i], i)):
-        images = {element.image_id for element in model.point3D(point_id).track.elements}
-        wanted = per_image if noise[point_id] <= limit and not short[point_id] else MIN_PER_IMAGE
-        if any(counts[image] < wanted for image in images):
-            counts.update(images)
-            kept.add(point_id)
-    for point_id in noise.keys() - kept:
-        model.delete_point3D(point_id)
+    kept = keep_first(
+        model,
+        sorted(usable, key=lambda i: (short[i], noise[i], i)),
+        lambda i: per_image if noise[i] <= limit and not short[i] else MIN_PER_IMAGE,
+    )
     return len(kept), float(np.median([noise[point_id] for point_id in kept])) if kept else 0.0
+
+
+def keep_first(model: Any, order: Sequence[int], wanted: Callable[[int], int]) -> list[int]:
+    """Keep of the points, in place, those in whose turn an image of theirs has fewer than `wanted` of them."""
+    counts: Counter[int] = Counter()
+    kept = []
+    for point_id in order:
+        images = {element.image_id for element in model.point3D(point_id).track.elements}
+        if any(counts[image] < wanted(point_id) for image in images):
+            counts.update(images)
+            kept.append(point_id)
+    for point_id in set(model.point3D_ids()).difference(kept):
+        model.delete_point3D(point_id)
+    return kept
 
 
 def _noise(point: Any) -> float:

@@ -35,7 +35,7 @@ FLAG_CODES: Mapping[str, str] = {
     "few_points": "the model has few 3D points per registered image",
     "coverage_low": "few of the frames are registered in the model",
     "focal_uncertain": "few of the starts tried for the lens end at the focal length that was chosen",
-    "lens_unsettled": "the tracks that agree best ask for another focal length than all tracks do",
+    "lens_unsettled": "the focal length still moves with the choice of the tracks that it follows from",
     "focal_implausible": "the focal length found gives a field of view that no borescope has",
     "distortion_implausible": "the lens distortion found folds the image: radius does not grow with angle",
     "high_reprojection_error": "the model fits its keypoints badly",

@@ -9,8 +9,8 @@ from core.flags import Flag
 
 MIN_FOV_DEG = 15.0
 MAX_FOV_DEG = 200.0
-MAX_SHIFT = 0.1
-"""A focal length that moves by more than this share with the choice of tracks may have further to go."""
+MAX_SHIFT = 0.06
+"""A focal length that the last choice of tracks still moves by more than this share may have further to go."""
 MAX_THETA = 2 * np.pi
 """A fisheye polynomial is followed up to here: beyond any lens, so that a far too short focal length is no fold."""
 
@@ -36,7 +36,7 @@ def viewing_angle(radius: float, distortion: NDArray[np.float64]) -> float | Non
 
 
 def check_shift(shift: float) -> Flag | None:
-    """`lens_unsettled` when the better part of the tracks and all of them disagree by more than 10 %.
+    """`lens_unsettled` when the focal length still moves by more than 6 % with the choice of tracks.
 
     Args:
         shift: relative change of the focal length, from `core.sparse.trimming`.

@@ -205,6 +205,9 @@ class ModelSettings(Group):
         True, "take off what hangs on the model by hardly any points", source="measured; thesis off"
     )
     final_adjustment: bool = option(True, "finish with a converged bundle adjustment", source="measured")
+    align_keypoints: bool = option(
+        True, "move the keypoints of a track to the same spot of the metal", source="decision 14; thesis off"
+    )
     trim_tracks: bool = option(
         True, "cameras and lens follow from the tracks that agree best, not from all", source="decision 13; thesis off"
     )

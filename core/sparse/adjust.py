@@ -3,8 +3,9 @@
 The bundle adjustments of the search stop early, which is right for a search and not for a result. COLMAP's
 global refinement (`IncrementalMapper.iterative_global_refinement`) is followed in its order: complete and
 merge tracks, adjust, filter, repeat. It differs in that it always runs to convergence, may let large
-residuals count less (Cauchy's loss: mismatches of up to 4 px pass the filters), may take cameras and lens from the
-better part of the tracks (`core.sparse.trimming`), and may free the principal point.
+residuals count less (Cauchy's loss: mismatches of up to 4 px pass the filters), may align keypoints with each other
+(`core.sparse.keypoint_alignment`), may take cameras and lens from the better part of the tracks
+(`core.sparse.trimming`), and may free the principal point.
 """
 
 from __future__ import annotations
@@ -17,8 +18,19 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
+from core.sparse.keypoint_alignment import Aligned
 from core.sparse.mapper import model_stats
-from core.sparse.trimming import POINT_LOSS_PX, Trimming, keep_agreeing, keep_first, move_points, set_lens, trim, whole
+from core.sparse.trimming import (
+    POINT_LOSS_PX,
+    TERMS,
+    Trimming,
+    keep_agreeing,
+    keep_first,
+    move_points,
+    set_lens,
+    trim,
+    whole,
+)
 
 F64 = NDArray[np.float64]
 
@@ -51,7 +63,12 @@ say little more: their sigmas come out larger than they are, so the trial is the
 PRINCIPAL_POINT = slice(2, 4)
 """Place of cx, cy in the parameters of OPENCV_FISHEYE."""
 
+ALIGNMENTS = 2
+"""The first finds its warps by a model of keypoints that are not aligned."""
+
 Progress = Callable[[float, str], None]
+Align = Callable[[Any, bool], Aligned]
+"""Aligns the keypoints of a model in place; whether observations that do not align are dropped."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +99,8 @@ class Adjustment:
     principal_point: PrincipalPoint
     trimming: Trimming | None
     """None when all tracks have a say."""
+    aligned: Aligned | None
+    """Of the first alignment; None when keypoints stay where they were detected."""
 
 
 def adjust(
@@ -90,6 +109,7 @@ def adjust(
     options: Any,
     *,
     refine_principal_point: bool,
+    align: Align | None = None,
     trim_tracks: bool = False,
     loss_scale_px: float = 1.0,
     threads: int = 1,
@@ -102,6 +122,7 @@ def adjust(
         cache: `pycolmap.DatabaseCache` of the same images; its correspondences complete the tracks.
         options: from `core.sparse.mapper.mapper_options`.
         refine_principal_point: free it when it is well determined.
+        align: moves keypoints before cameras follow from them; None leaves them.
         trim_tracks: take cameras and lens from the tracks that agree best.
         loss_scale_px: residuals above this count less; 0 counts them all by their squares.
         threads: of Ceres; more than one is nearly but not exactly repeatable.
@@ -115,10 +136,8 @@ def adjust(
         schedule.append(adjustment_options(False, loss_scale_px, threads))
     free = adjustment_options(True, loss_scale_px, threads)
     rounds, stable = _refine(work, cache, options, schedule, lambda r: progress(0.5 * r, "bundle adjustment"))
-    trimming = None
-    if trim_tracks:
-        progress(0.5, "choosing tracks")
-        trimming = trim(work, lambda scale: adjustment_options(False, scale, threads))
+    progress(0.5, "keypoints and tracks")
+    trimming, aligned = _settle(work, schedule[-1], align, trim_tracks, threads)
     found = PrincipalPoint(False, "off")
     if refine_principal_point:
         progress(0.7, "principal point")
@@ -127,7 +146,7 @@ def adjust(
             keep_agreeing(said, TRIAL_POINTS)
         found = free_principal_point(said, free)
         if found.refined and trimming is not None:
-            more = trim(work, lambda scale: adjustment_options(True, scale, threads))
+            more = trim(work, lambda scale: adjustment_options(True, scale, threads), TERMS[-1:])
             trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
         elif found.refined:
             further, stable = _refine(work, cache, options, [free], lambda r: progress(0.7 + 0.3 * r, "adjustment"))
@@ -135,8 +154,28 @@ def adjust(
     if trimming is not None:
         progress(0.9, "points")
         set_lens(work, 4)
-        _retrack(work, cache, options, adjustment_options(False, POINT_LOSS_PX, threads))
-    return Adjustment(work, rounds, stable, before, model_stats(work).mean_reprojection_error_px, found, trimming)
+        _retrack(work, cache, options, adjustment_options(False, POINT_LOSS_PX, threads), align)
+    after = model_stats(work).mean_reprojection_error_px
+    return Adjustment(work, rounds, stable, before, after, found, trimming, aligned)
+
+
+def _settle(
+    work: Any, options: Any, align: Align | None, trim_tracks: bool, threads: int
+) -> tuple[Trimming | None, Aligned | None]:
+    """Align keypoints and adjust in turns, in place; what the last choice of tracks and the first alignment did."""
+    trimming: Trimming | None = None
+    aligned: Aligned | None = None
+    for turn in range(ALIGNMENTS if align is not None else 1):
+        if align is not None:
+            done = align(work, True)
+            aligned = aligned or done
+        if trim_tracks:
+            terms = TERMS if turn == 0 else TERMS[-1:]
+            found = trim(work, lambda scale: adjustment_options(False, scale, threads), terms)
+            trimming = found if trimming is None else replace(found, rounds=trimming.rounds + found.rounds)
+        elif align is not None:
+            pycolmap.create_default_ceres_bundle_adjuster(options, whole(work), work).solve()
+    return trimming, aligned
 
 
 def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
@@ -227,7 +266,7 @@ def _refine(
     return rounds, stable
 
 
-def _retrack(model: Any, cache: Any, options: Any, points: Any) -> None:
+def _retrack(model: Any, cache: Any, options: Any, points: Any, align: Align | None) -> None:
     """Complete and filter the tracks in place, with cameras that stay as they are."""
     triangulation, mapping = options.get_triangulation(), options.get_mapper()
     mapper = pycolmap.IncrementalMapper(cache)
@@ -235,6 +274,8 @@ def _retrack(model: Any, cache: Any, options: Any, points: Any) -> None:
     mapper.filter_points(mapping)
     mapper.complete_and_merge_tracks(triangulation)
     mapper.retriangulate(triangulation)
+    if align is not None:
+        align(model, False)
     move_points(model, points)
     mapper.filter_points(mapping)
     mapper.end_reconstruction(False)

@@ -11,11 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numba
 import numpy as np
 import numpy.typing as npt
 import pycolmap
 
+from core.sparse.jit import compiled
 from core.sparse.view_graph import Frames
 from core.viewgraph import PairTable
 
@@ -197,13 +197,5 @@ def _join_python(edges: npt.NDArray[np.int64], frame: npt.NDArray[np.int64], n_f
     return parent
 
 
-def _compiled(function: Any) -> Any:
-    """Machine code, cached on disk where numba can write; compiled in each process where it cannot."""
-    try:
-        return numba.njit(cache=True)(function)
-    except RuntimeError:
-        return numba.njit(function)
-
-
-_take: Any = _compiled(_take_python)
-_join: Any = _compiled(_join_python)
+_take: Any = compiled(_take_python)
+_join: Any = compiled(_join_python)

@@ -5,7 +5,9 @@ ask for is not noise: it all bends the same way. A lens that is free gives way t
 reprojection error, so no loss function that looks at one residual sees them. What remains is that tracks on the
 metal can agree with each other to a fraction of a pixel and these cannot: adjust to the better part of the tracks,
 look at all of them again, choose anew, until the choice settles. These are the concentration steps of least trimmed
-squares (Rousseeuw 1984; Rousseeuw and Van Driessen 2006), with tracks in place of observations.
+squares (Rousseeuw 1984; Rousseeuw and Van Driessen 2006), with tracks in place of observations. What that part says
+of the noise then admits every track that is no noisier than it should be, and these decide: the reweighting step of
+Rousseeuw and Leroy (1987), without which most of what good tracks know is thrown away.
 
 The lens has few terms meanwhile, first one and then two: k3, k4 and a second focal length are what gives way most.
 """
@@ -32,6 +34,11 @@ TERMS = (1, 2)
 """Radial terms of the lens, stage by stage."""
 MAX_ROUNDS = 12
 """Of one stage."""
+ADMITTED = 2.5
+"""Times the typical error of the better part, up to which a track is admitted at last;"""
+ADMITTED_PER_IMAGE = 400
+"""the best so many of an image, if it has as many. More take longer and move nothing."""
+ADMITTED_ROUNDS = 3
 SETTLED = 0.001
 """Rounds end when the focal length changed by less than this share."""
 POINT_LOSS_PX = 1.0
@@ -51,32 +58,38 @@ class Trimming:
     kept: int
     """Tracks that the cameras follow from."""
     median_error_px: float
-    """Of the kept tracks before the last round, and the scale of its loss."""
+    """Of the better part of the tracks before the last round, and the scale of its loss."""
     focal_before_px: float
+    """Before the last time that tracks were chosen."""
     focal_after_px: float
 
     @property
     def shift(self) -> float:
-        """Relative change of the focal length: how far the better part and the whole disagree about the lens."""
+        """Relative change of the focal length by the last choice of tracks."""
         return self.focal_after_px / self.focal_before_px - 1.0
 
 
-def trim(model: Any, options: Options) -> Trimming:
+def trim(model: Any, options: Options, terms: Sequence[int] = TERMS) -> Trimming:
     """Adjust cameras and lens in place to the better part of the tracks; all points then follow from them.
 
     Args:
         model: `pycolmap.Reconstruction` with one fisheye camera, adjusted; its camera comes out as RADIAL_FISHEYE.
         options: of the adjustments.
+        terms: radial terms of the lens, stage by stage.
     """
     before = focal = _focal(model)
     rounds, kept, scale = 0, 0, 0.0
-    for terms in TERMS:
-        set_lens(model, terms)
-        for _ in range(MAX_ROUNDS):
+    stages = [(number, MAX_ROUNDS, False) for number in terms] + [(terms[-1], ADMITTED_ROUNDS, True)]
+    for number, most, admit in stages:
+        set_lens(model, number)
+        for _ in range(most):
             part = pycolmap.Reconstruction(model)
             kept, scale = keep_agreeing(part)
             if kept == 0:
                 break
+            if admit:
+                part = pycolmap.Reconstruction(model)
+                kept = keep_admitted(part, ADMITTED * scale)
             _solve(part, options(scale))
             _take_cameras(model, part)
             move_points(model, options(POINT_LOSS_PX))
@@ -106,17 +119,22 @@ def keep_agreeing(model: Any, per_image: int = PER_IMAGE) -> tuple[int, float]:
     Best first, a point stays while one of its images has fewer than `per_image`; beyond the better part of all, and
     short ones after all others, while one has fewer than `MIN_PER_IMAGE`: every camera has to be held.
     """
-    model.update_point_3d_errors()
-    noise = {point_id: _noise(point) for point_id, point in model.points3D.items()}
+    noise = _noises(model)
     short = {point_id: point.track.length() < MIN_LENGTH for point_id, point in model.points3D.items()}
-    usable = [point_id for point_id, error in noise.items() if np.isfinite(error)]
-    limit = float(np.median([noise[point_id] for point_id in usable])) if usable else 0.0
+    limit = float(np.median(list(noise.values()))) if noise else 0.0
     kept = keep_first(
         model,
-        sorted(usable, key=lambda i: (short[i], noise[i], i)),
+        sorted(noise, key=lambda i: (short[i], noise[i], i)),
         lambda i: per_image if noise[i] <= limit and not short[i] else MIN_PER_IMAGE,
     )
     return len(kept), float(np.median([noise[point_id] for point_id in kept])) if kept else 0.0
+
+
+def keep_admitted(model: Any, limit_px: float) -> int:
+    """Keep of the points, in place, those with an error up to a limit; how many. Every camera is held here too."""
+    noise = _noises(model)
+    wanted = {point_id: ADMITTED_PER_IMAGE if error <= limit_px else MIN_PER_IMAGE for point_id, error in noise.items()}
+    return len(keep_first(model, sorted(noise, key=lambda i: (noise[i], i)), wanted.__getitem__))
 
 
 def keep_first(model: Any, order: Sequence[int], wanted: Callable[[int], int]) -> list[int]:
@@ -131,6 +149,13 @@ def keep_first(model: Any, order: Sequence[int], wanted: Callable[[int], int]) -
     for point_id in set(model.point3D_ids()).difference(kept):
         model.delete_point3D(point_id)
     return kept
+
+
+def _noises(model: Any) -> dict[int, float]:
+    """Of all points with a finite error."""
+    model.update_point_3d_errors()
+    noise = {point_id: _noise(point) for point_id, point in model.points3D.items()}
+    return {point_id: error for point_id, error in noise.items() if np.isfinite(error)}
 
 
 def _noise(point: Any) -> float:

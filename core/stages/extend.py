@@ -6,17 +6,22 @@ import json
 from dataclasses import asdict
 from typing import Any
 
+import cv2
 import numpy as np
 import pycolmap
+from numpy.typing import NDArray
 
 from core.checks.lens import check_shift
 from core.checks.model import check_model, is_wrong
-from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, adjust
+from core.errors import StageFailed
+from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
+from core.sparse.keypoint_alignment import align_keypoints
 from core.sparse.loose import drop_loose_ends
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from core.stage import Facts, StageResult, StageTask
+from core.video.still import read_mask
 from core.viewgraph import PairTable, read_table
 
 
@@ -79,11 +84,25 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
         open_cache(task.input("graph") / "database.db", names, MIN_MATCHES),
         mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
+        align=_aligner(task) if task.settings.model.align_keypoints else None,
         trim_tracks=task.settings.model.trim_tracks,
         loss_scale_px=task.settings.model.loss_scale_px,
         threads=task.settings.compute.threads or 1,  # 0 asks for a result that repeats to the last bit
         progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
     )
+
+
+def _aligner(task: StageTask) -> Align:
+    frames = task.input("frames")
+    still = read_mask(frames / "still.png")
+
+    def read(name: str) -> NDArray[np.uint8]:
+        picture = cv2.imread(str(frames / "images" / name), cv2.IMREAD_GRAYSCALE)
+        if picture is None:
+            raise StageFailed(f"frame {name} cannot be read", where=name)
+        return np.asarray(picture, np.uint8)
+
+    return lambda model, drop: align_keypoints(model, read, still, drop=drop, threads=task.threads)
 
 
 def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int) -> Facts:
@@ -118,5 +137,6 @@ def _adjustment_facts(adjustment: Adjustment) -> Facts:
             "sigma_px": None if point.sigma_px is None else list(point.sigma_px),
             "shift_px": None if point.shift_px is None else list(point.shift_px),
         },
+        "alignment": None if adjustment.aligned is None else asdict(adjustment.aligned),
         "trimming": None if trimming is None else {**asdict(trimming), "shift": trimming.shift},
     }

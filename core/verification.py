@@ -18,6 +18,9 @@ from core.settings.groups import VerificationSettings
 UNDEFINED, DEGENERATE, CALIBRATED, PLANAR = 0, 1, 2, 4
 """COLMAP's configurations of a pair that are named in this code; 5 panoramic, 7 watermark."""
 
+STRONG_INLIERS = 30
+"""A pair with this many inliers can register an image (COLMAP's least for an absolute pose)."""
+
 _MIN_TRIALS = 30
 """Of the RANSAC. COLMAP's 100 find the same inliers on real pairs at twice the cost."""
 

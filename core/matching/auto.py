@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
 from core.matching.mutual_nearest import Matches, mutual_nearest, unit_descriptors
 from core.settings.groups import FeatureSettings, MatchSettings
-from core.verification import TwoViewGeometry, Verifier
+from core.verification import STRONG_INLIERS, TwoViewGeometry, Verifier
 
 MUTUAL_NEAREST = 0
 LIGHTGLUE = 1
+
+GIVE_UP_AFTER = 2
+"""Pairs in vain after which LightGlue is not tried on a frame that nothing has matched yet."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,29 @@ class MatchedPair:
     n_matches: int
     """Matches before verification."""
     geometry: TwoViewGeometry
+    tried_lightglue: bool = False
+
+
+class Patience:
+    """Which frames are worth LightGlue, by what came of it so far: a black frame would be tried with all neighbours.
+
+    Nearest pairs should come first: where they fail, farther ones do not succeed.
+    """
+
+    def __init__(self) -> None:
+        self._in_vain: Counter[int] = Counter()
+        self._matched: set[int] = set()
+
+    def has_run_out(self, pair: tuple[int, int]) -> bool:
+        """Whether one of the frames has been tried often enough."""
+        return any(frame not in self._matched and self._in_vain[frame] >= GIVE_UP_AFTER for frame in pair)
+
+    def note(self, pair: tuple[int, int], outcome: MatchedPair) -> None:
+        """Take in what a pair came to."""
+        if len(outcome.geometry.inliers) >= STRONG_INLIERS:
+            self._matched.update(pair)
+        elif outcome.tried_lightglue:
+            self._in_vain.update(pair)
 
 
 class PairMatcher:
@@ -41,21 +68,23 @@ class PairMatcher:
         self._network: Any = None
         self._units = _LastUsed(lambda features: unit_descriptors(features.descriptors))
 
-    def match(self, first: FrameFeatures, second: FrameFeatures) -> MatchedPair:
+    def match(self, first: FrameFeatures, second: FrameFeatures, rematch: bool = True) -> MatchedPair:
         """Verified matches of two frames.
 
         `auto` takes mutual nearest neighbours. Where too few or too small a share of them pass the
-        verification, LightGlue tries again on the strongest keypoints, and the better outcome counts.
+        verification, LightGlue tries again on the strongest keypoints, and the better outcome counts;
+        without `rematch` it does not.
         """
         if self._use_lightglue:
             return self._verified(LIGHTGLUE, self._lightglue(first, second, None), first, second)
         matches = mutual_nearest(self._units(first), self._units(second), self._settings.ratio)
         cheap = self._verified(MUTUAL_NEAREST, matches, first, second)
-        if not self._may_rematch or not self._weak(cheap):
+        if not self._may_rematch or not rematch or not self._weak(cheap):
             return cheap
         matches = self._lightglue(first, second, self._settings.auto_keypoints)
         better = self._verified(LIGHTGLUE, matches, first, second)
-        return better if len(better.geometry.inliers) > len(cheap.geometry.inliers) else cheap
+        found = better if len(better.geometry.inliers) > len(cheap.geometry.inliers) else cheap
+        return replace(found, tried_lightglue=True)
 
     def _weak(self, pair: MatchedPair) -> bool:
         inliers = len(pair.geometry.inliers)

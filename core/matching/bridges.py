@@ -14,13 +14,12 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 from scipy.spatial.transform import Rotation
 
+from core.verification import STRONG_INLIERS
 from core.viewgraph import PairTable
 
 I64 = NDArray[np.int64]
 Bool = NDArray[np.bool_]
 
-STRONG_INLIERS = 30
-"""A pair with this many inliers can register an image (COLMAP's least for an absolute pose)."""
 THIN_SHARE = 0.2
 """Of the pairs tried across a place of the sequence; with fewer strong ones it is thin."""
 MIN_DEGREE = 2

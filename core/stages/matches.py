@@ -10,7 +10,7 @@ import torch
 
 from core.errors import StageFailed
 from core.features.io import FrameFeatures, read_features
-from core.matching.auto import MatchedPair, PairMatcher
+from core.matching.auto import MatchedPair, PairMatcher, Patience
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
 from core.verification import Verifier, read_camera
@@ -28,25 +28,32 @@ def run(task: StageTask) -> StageResult:
 
 
 def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[MatchedPair]:
-    """Outcomes of `pairs` in their order; features are read when first needed and let go after their last use."""
+    """Outcomes of `pairs` in their order, the nearest frames matched first.
+
+    Features are read when first needed and let go after their last use.
+    """
     settings = task.settings
     camera = read_camera(task.input("camera") / "camera.json")
     verifier = Verifier(camera, settings.verification, settings.seed)
     matcher = PairMatcher(settings.matching, settings.features, verifier)
     folders = feature_folders(task)
-    last_use = {frame: row for row, pair in enumerate(pairs) for frame in pair}
+    order = sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair))
+    last_use = {frame: row for row, pair in enumerate(order) for frame in pair}
     loaded: dict[int, FrameFeatures] = {}
-    matched: list[MatchedPair] = []
-    for row, pair in enumerate(pairs):
+    matched: dict[tuple[int, int], MatchedPair] = {}
+    patience = Patience()
+    for row, pair in enumerate(order):
         task.report(row, len(pairs), f"frames {pair[0]} and {pair[1]}")
         for frame in pair:
             if frame not in loaded:
                 loaded[frame] = read_features(folders[frame])
-        matched.append(matcher.match(loaded[pair[0]], loaded[pair[1]]))
+        found = matcher.match(loaded[pair[0]], loaded[pair[1]], rematch=not patience.has_run_out(pair))
+        patience.note(pair, found)
+        matched[pair] = found
         for frame in pair:
             if last_use[frame] == row:
                 del loaded[frame]
-    return matched
+    return [matched[pair] for pair in pairs]
 
 
 def _all_pairs(task: StageTask) -> list[tuple[int, int]]:

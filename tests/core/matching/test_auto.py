@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import torch
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
-from core.matching.auto import LIGHTGLUE, MUTUAL_NEAREST, PairMatcher
+from core.matching.auto import GIVE_UP_AFTER, LIGHTGLUE, MUTUAL_NEAREST, PairMatcher, Patience
 from core.matching.lightglue import LightGlueMatcher, rename
 from core.settings import make_settings
 from core.verification import Verifier
@@ -69,6 +70,31 @@ def test_weak_pairs_are_tried_again_and_the_better_outcome_counts(monkeypatch: p
     kept = _matcher(**options).match(first, second)
     assert kept.method == MUTUAL_NEAREST
     np.testing.assert_array_equal(kept.geometry.inliers, cheap.geometry.inliers)
+
+
+def test_patience_with_a_frame_ends_unless_something_matched_it() -> None:
+    first, second, _ = _frames(blur=0.1)
+    good = _matcher(matching__method="mutual_nearest").match(first, second)
+    poor = replace(good, geometry=replace(good.geometry, inliers=good.geometry.inliers[:9]), tried_lightglue=True)
+    patience = Patience()
+    for other in range(GIVE_UP_AFTER):
+        assert not patience.has_run_out((1, 9))
+        patience.note((other, 9), replace(poor, tried_lightglue=False))  # the cheap way says nothing about LightGlue
+        patience.note((other, 9), poor)
+    assert patience.has_run_out((1, 9))
+    assert patience.has_run_out((9, 10))
+    assert not patience.has_run_out((0, 1))
+    patience.note((8, 9), good)
+    assert not patience.has_run_out((9, 10))
+
+
+def test_without_a_rematch_the_cheap_outcome_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second, truth = _frames(blur=1.6)
+    monkeypatch.setattr(LightGlueMatcher, "match", lambda *_: truth)
+    matcher = _matcher(matching__method="auto", matching__auto_min_inliers=150)
+    kept, again = matcher.match(first, second, rematch=False), matcher.match(first, second)
+    assert (kept.method, kept.tried_lightglue) == (MUTUAL_NEAREST, False)
+    assert (again.method, again.tried_lightglue) == (LIGHTGLUE, True)
 
 
 def test_lightglue_for_sift_is_refused_and_auto_stays_cheap() -> None:

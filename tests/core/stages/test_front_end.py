@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +13,13 @@ import pycolmap
 import pytest
 
 from core.errors import Cancelled, StageFailed
-from core.features.io import read_features
+from core.features.io import FrameFeatures, read_features, write_features
+from core.matching.auto import GIVE_UP_AFTER
+from core.matching.lightglue import LightGlueMatcher
 from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import features, graph, matches
+from core.verification import STRONG_INLIERS
 from core.viewgraph import read_table
 from tests.core.making_frames import SIZE, frames_folder
 
@@ -125,5 +130,30 @@ def test_cancelling_stops_before_the_next_frame(run: Path, tmp_path: Path) -> No
 def test_a_missing_chunk_is_named(run: Path, tmp_path: Path) -> None:
     inputs = _inputs(run)
     del inputs["features/001"]
-    with pytest.raises(StageFailed, match="frame 5 has no features"):
+    with pytest.raises(StageFailed, match="frame 3 has no features"):
         matches.run(_task("matches/000", tmp_path / "out", inputs, start=0, end=3))
+
+
+def test_a_frame_that_shows_nothing_costs_little(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    inputs = _inputs(run)
+    shutil.copytree(run / "features" / "000", tmp_path / "features")
+    found, rng = read_features(tmp_path / "features" / "0002.npz"), np.random.default_rng(0)
+    noise = rng.normal(size=found.descriptors.shape)
+    noise /= np.linalg.norm(noise, axis=1, keepdims=True)
+    write_features(tmp_path / "features" / "0002.npz", replace(found, descriptors=noise.astype(np.float16)))
+    inputs["features/000"] = tmp_path / "features"
+    tried: list[FrameFeatures] = []
+
+    def match(self: LightGlueMatcher, a: FrameFeatures, b: FrameFeatures, *_: Any) -> Any:
+        tried.append(a)
+        return np.empty((0, 2), np.uint32)
+
+    monkeypatch.setattr(LightGlueMatcher, "match", match)
+    options = {"matching.method": "auto", "matching.auto_min_inliers": 100}
+    matches.run(_task("matches/000", tmp_path / "out", inputs, options, start=0, end=3))
+    table = read_table(tmp_path / "out" / "pairs.npz")
+    shows = ~(table.pairs == 2).any(axis=1)
+    assert table.n_inliers[shows].min() > 300
+    assert table.n_inliers[~shows].max() < STRONG_INLIERS
+    assert (~shows).sum() == 5
+    assert len(tried) == GIVE_UP_AFTER

@@ -22,6 +22,8 @@ DEPTH_WEIGHT = 0.8
 """A patch that depth maps see through is a sheet that fusion or Poisson left before the blades."""
 PRIOR_VIEWS = 3.0
 """The share of supporting views is trusted only as far as there are more of them than this."""
+MIN_SPARSE = 0.2
+"""Of the sparse points on or before a patch, the least share that lies on it: else something nearer was meant."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,8 @@ class Candidate:
     """No other candidate of the detection is nearer to the camera."""
     depth: float | None
     """Share of the depth maps' looks that met it, see `core.mapping.depth_witness`."""
+    sparse: float | None = None
+    """Of the sparse points of the detection that lie on it or before it, the share on it; None = too few."""
 
 
 def merit(candidate: Candidate, visible: int, support: int) -> float:
@@ -48,11 +52,24 @@ def merit(candidate: Candidate, visible: int, support: int) -> float:
     return share + NEAREST_BONUS * candidate.nearest + SHARE_WEIGHT * candidate.patch.share + DEPTH_WEIGHT * depth
 
 
+def overruled(candidate: Candidate, visible: int, support: int) -> bool:
+    """Whether the sparse points show something before it, and most views that could see it show no detection there.
+
+    That is a blade whose surface is missing: what its pixels meet is the next one.
+    """
+    return candidate.sparse is not None and candidate.sparse < MIN_SPARSE and 2 * support <= visible
+
+
 def choose(candidates: Sequence[Candidate], said: Testimony) -> dict[int, tuple[int, float]]:
-    """The best candidate of each detection: its row and by how much it leads (infinite without another)."""
+    """The best candidate of each detection that has one: its row and by how much it leads (infinite without another).
+
+    Those that are overruled do not count.
+    """
     visible, support = said.n_visible, said.n_support
     by_detection: dict[int, list[tuple[float, int]]] = {}
     for row, candidate in enumerate(candidates):
+        if overruled(candidate, int(visible[row]), int(support[row])):
+            continue
         value = merit(candidate, int(visible[row]), int(support[row]))
         by_detection.setdefault(candidate.detection, []).append((-value, row))
     chosen = {}

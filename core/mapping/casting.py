@@ -70,7 +70,8 @@ class Missed:
     """Why a sight has no place on the surface."""
 
     reason: str
-    """``off_surface``, or ``occluded`` when only the back of the surface lies there."""
+    """``off_surface``, also where something nearer than any surface is seen; ``occluded`` when only the back of the
+    surface lies there."""
 
 
 def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
@@ -83,7 +84,8 @@ def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
             outcome[row] = Missed("occluded")
         for patch in found:
             normal, depth = _normal(scene, patch), seen_share(scene.depth, sight.frame, patch.points, scene.spacing)
-            candidates.append(Candidate(row, patch, patch.centroid, normal, patch is found[0], depth))
+            sparse = _sparse(scene, sight, patch)[0].share
+            candidates.append(Candidate(row, patch, patch.centroid, normal, patch is found[0], depth, sparse))
     places = places_nearest(scene.surface, [candidate.place for candidate in candidates])
     candidates = [replace(candidate, place=place) for candidate, place in zip(candidates, places, strict=True)]
     said = _ask(scene, sights, candidates)
@@ -134,7 +136,7 @@ def _cast(
     scene: Scene, sight: Sight, candidate: Candidate, said: Testimony, row: int, lead: float, recall: float
 ) -> Cast:
     visible, support = int(said.n_visible[row]), int(said.n_support[row])
-    sparse, ids, points = _sparse(scene, sight, candidate.patch)
+    _, ids, points = _sparse(scene, sight, candidate.patch)
     cloud, _ = scene.cloud.query(candidate.place)
     x1, y1, x2, y2 = sight.box_px
     in_cam = sight.R @ (candidate.place - sight.origin)
@@ -145,7 +147,7 @@ def _cast(
         share=candidate.patch.share,
         cosine=candidate.patch.cosine,
         lead=lead,
-        sparse=sparse.share,
+        sparse=candidate.sparse,
         depth=candidate.depth,
         cloud_spacings=float(cloud) / scene.spacing if scene.spacing > 0 else 0.0,
         score=sight.score,

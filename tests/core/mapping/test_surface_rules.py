@@ -103,6 +103,22 @@ def test_without_surface_the_depth_map_then_the_sparse_points_give_an_estimate()
     assert (nothing.row.outcome, nothing.row.reason, nothing.row.x) == ("unplaced", "off_surface", None)
 
 
+def test_a_blade_without_a_surface_is_not_taken_for_the_next_one() -> None:
+    far = plates.plate((-3.0, 3.0), (-2.0, 2.0), FAR)
+    one = detection(0, ON_NEAR, 3)
+    points = np.array(ON_NEAR) + np.array([[0.05, 0, 0], [-0.05, 0.02, 0], [0, -0.05, 0.01]])
+    sparse = {3: (np.array([plates.pixel(point, 3) for point in points]), points)}
+    unaware = placed([one], mesh=far, looked=[3])[0]
+    assert (unaware.row.outcome, unaware.row.z) == ("mapped", pytest.approx(FAR, abs=1e-3))
+    found = placed([one], mesh=far, looked=[3], sparse=sparse)[0]
+    assert (found.row.outcome, found.row.reason, found.row.rung) == ("approximate", "off_surface", "sparse")
+    assert xyz(found) == pytest.approx(ON_NEAR, abs=0.05)
+    # Frames that agree on the far place outvote a few points, which may be wrong.
+    seen_behind = seen_in((ON_NEAR[0] * FAR / NEAR, ON_NEAR[1] * FAR / NEAR, FAR))
+    outvoted = placed(seen_behind, mesh=far, sparse=sparse)
+    assert [row.row.outcome for row in outvoted] == ["mapped"] * len(seen_behind)
+
+
 def test_sparse_points_at_two_depths_give_one_of_them_and_never_nothing() -> None:
     """The quartile of few depths lies between two of them; nothing is near it."""
     hole = plates.plate((2.0, 3.0), (-2.0, 2.0), NEAR)

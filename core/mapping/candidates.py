@@ -22,6 +22,8 @@ DEPTH_WEIGHT = 0.8
 """A patch that depth maps see through is a sheet that fusion or Poisson left before the blades."""
 PRIOR_VIEWS = 3.0
 """The share of supporting views is trusted only as far as there are more of them than this."""
+WITNESSED = 0.5
+"""Share of depth maps' looks, or of sparse points, on a patch that is there."""
 MIN_SPARSE = 0.2
 """Of the sparse points on or before a patch, the least share that lies on it: else something nearer was meant."""
 
@@ -50,6 +52,11 @@ def merit(candidate: Candidate, visible: int, support: int) -> float:
     share = support / (visible + PRIOR_VIEWS)
     depth = 0.5 if candidate.depth is None else candidate.depth
     return share + NEAREST_BONUS * candidate.nearest + SHARE_WEIGHT * candidate.patch.share + DEPTH_WEIGHT * depth
+
+
+def is_witnessed(candidate: Candidate) -> bool:
+    """Whether depth maps or sparse points say that what was seen lies on it."""
+    return any(share is not None and share >= WITNESSED for share in (candidate.depth, candidate.sparse))
 
 
 def overruled(candidate: Candidate, visible: int, support: int) -> bool:

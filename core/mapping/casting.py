@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.mapping.candidates import MIN_SHARE, Candidate, choose
+from core.mapping.candidates import MIN_SHARE, Candidate, choose, is_witnessed
 from core.mapping.confidence import Parts
 from core.mapping.consensus import Testimony, testimony
 from core.mapping.depth_witness import seen_share
@@ -18,6 +18,7 @@ from core.mapping.scene import Scene, places_nearest
 from core.mapping.sigma import place_sigma
 from core.mapping.support import Box
 from core.mapping.support_check import Agreement, depth_agreement
+from core.mapping.surface import Hits
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -79,13 +80,10 @@ def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
     candidates: list[Candidate] = []
     outcome: list[Cast | Missed] = [Missed("off_surface") for _ in sights]
     for row, sight in enumerate(sights):
-        found, blocked = _patches(scene, sight)
+        found, blocked = _candidates(scene, row, sight)
         if not found and blocked:
             outcome[row] = Missed("occluded")
-        for patch in found:
-            normal, depth = _normal(scene, patch), seen_share(scene.depth, sight.frame, patch.points, scene.spacing)
-            sparse = _sparse(scene, sight, patch)[0].share
-            candidates.append(Candidate(row, patch, patch.centroid, normal, patch is found[0], depth, sparse))
+        candidates += found
     places = places_nearest(scene.surface, [candidate.place for candidate in candidates])
     candidates = [replace(candidate, place=place) for candidate, place in zip(candidates, places, strict=True)]
     said = _ask(scene, sights, candidates)
@@ -96,16 +94,42 @@ def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
     return outcome
 
 
-def _patches(scene: Scene, sight: Sight) -> tuple[list[Patch], bool]:
-    """Patches large enough, nearest first, and whether the pixels meet only the back of the surface."""
+def _candidates(scene: Scene, row: int, sight: Sight) -> tuple[list[Candidate], bool]:
+    """Patches large enough, and whether the pixels meet only the back of the surface.
+
+    No camera sees the back of a solid, so rays go on through backs. But where a thin blade was seen from both sides
+    its two sheets can come out as one, turned either way: the first hits count as well, whatever their side, where
+    depth maps or sparse points say that this is what was seen.
+    """
     rays = scene.views.rays(sight.samples.xy, sight.R)
-    hits = scene.surface.cast_front(np.broadcast_to(sight.origin, rays.shape), rays, 0.5 * scene.spacing)
-    found = split_patches(sight.samples, sight.origin, rays, hits, scene.spacing)
-    return [patch for patch in found if patch.share >= MIN_SHARE], bool((hits.hit & (hits.cosine <= 0)).any())
+    origins = np.broadcast_to(sight.origin, rays.shape)
+    front = scene.surface.cast_front(origins, rays, 0.5 * scene.spacing)
+    found = [_candidate(scene, row, sight, patch) for patch in _large(scene, sight, rays, front)]
+    first = scene.surface.cast(origins, rays)
+    if (first.cosine[first.hit] < 0).any():
+        turned = _large(scene, sight, rays, replace(first, cosine=np.abs(first.cosine)))
+        found += filter(is_witnessed, (_candidate(scene, row, sight, patch) for patch in turned))
+    nearest = min((candidate.patch.distance for candidate in found), default=0.0)
+    found = [replace(candidate, nearest=candidate.patch.distance == nearest) for candidate in found]
+    return found, bool((front.hit & (front.cosine <= 0)).any())
 
 
-def _normal(scene: Scene, patch: Patch) -> F64:
-    total = patch.weights @ scene.face_normals[patch.faces]
+def _large(scene: Scene, sight: Sight, rays: F64, hits: Hits) -> list[Patch]:
+    patches = split_patches(sight.samples, sight.origin, rays, hits, scene.spacing)
+    return [patch for patch in patches if patch.share >= MIN_SHARE]
+
+
+def _candidate(scene: Scene, row: int, sight: Sight, patch: Patch) -> Candidate:
+    depth = seen_share(scene.depth, sight.frame, patch.points, scene.spacing)
+    sparse = _sparse(scene, sight, patch)[0].share
+    return Candidate(row, patch, patch.centroid, _normal(scene, patch, sight.origin), False, depth, sparse)
+
+
+def _normal(scene: Scene, patch: Patch, origin: F64) -> F64:
+    """Mean normal towards the camera, whichever way the faces are turned."""
+    normals = scene.face_normals[patch.faces]
+    side = np.where(((origin - patch.points) * normals).sum(axis=1) < 0, -1.0, 1.0)
+    total = (patch.weights * side) @ normals
     length = float(np.linalg.norm(total))
     normal: F64 = total / length if length > 0 else total
     return normal

@@ -147,6 +147,22 @@ def test_a_stray_sheet_that_shows_its_back_is_seen_through() -> None:
         assert xyz(one) == pytest.approx(ON_NEAR, abs=0.02)
 
 
+def test_a_blade_that_came_out_turned_is_a_place_where_witnesses_say_so() -> None:
+    near = plates.plate((-3.0, 0.0), (-2.0, 2.0), NEAR)
+    turned = type(near)(near.vertices, np.ascontiguousarray(near.faces[:, ::-1]))
+    mesh = plates.joined([turned, plates.plate((-4.0, 4.0), (-3.0, 3.0), FAR)])
+    detections = seen_in(ON_NEAR)
+    for one in placed(detections, mesh=mesh):
+        assert one.row.z == pytest.approx(FAR, abs=1e-3), "unaware of what was seen"
+    depth = plates.depth_maps_of(plates.plates(), [0, 4, 8])
+    for one in placed(detections, mesh=mesh, depth=depth):
+        assert (one.row.outcome, one.row.rung) == ("mapped", "surface")
+        assert xyz(one) == pytest.approx(ON_NEAR, abs=0.02)
+        assert one.normal == pytest.approx((0, 0, -1), abs=1e-6)
+        assert one.parts is not None
+        assert one.parts.support == len(detections) - 1
+
+
 def test_a_frame_without_pose_is_placed_between_its_neighbours_or_not_at_all() -> None:
     frames = [0, 1, 2, 3, 5, 6, 7, 8]
     between = placed([detection(0, ON_NEAR, 4)], frames=frames)[0]

@@ -92,7 +92,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("geometric", "dense", "seed", fan_out=True, queue="gpu", weight=21),
         _spec("fuse", "fusion", "dense", weight=3),
         _spec("mesh", "mesh", weight=2),
-        _spec("map_defects", "mapping", version=8, weight=0.6),
+        _spec("map_defects", "mapping", version=9, weight=0.6),
         _spec("timeline", "mapping", "timeline", version=4, weight=0.5),
         _spec("gallery", "gallery", "mapping.method", version=2, reads_video=True, weight=1),
     )

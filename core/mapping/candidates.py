@@ -60,11 +60,14 @@ def is_witnessed(candidate: Candidate) -> bool:
 
 
 def overruled(candidate: Candidate, visible: int, support: int) -> bool:
-    """Whether the sparse points show something before it, and most views that could see it show no detection there.
+    """Whether the sparse points show something before it, and neither depth maps nor most views that could see it
+    show it there.
 
     That is a blade whose surface is missing: what its pixels meet is the next one.
     """
-    return candidate.sparse is not None and candidate.sparse < MIN_SPARSE and 2 * support <= visible
+    if candidate.sparse is None or candidate.sparse >= MIN_SPARSE or 2 * support > visible:
+        return False
+    return candidate.depth is None or candidate.depth < WITNESSED
 
 
 def choose(candidates: Sequence[Candidate], said: Testimony) -> dict[int, tuple[int, float]]:

@@ -117,6 +117,9 @@ def test_a_blade_without_a_surface_is_not_taken_for_the_next_one() -> None:
     seen_behind = seen_in((ON_NEAR[0] * FAR / NEAR, ON_NEAR[1] * FAR / NEAR, FAR))
     outvoted = placed(seen_behind, mesh=far, sparse=sparse)
     assert [row.row.outcome for row in outvoted] == ["mapped"] * len(seen_behind)
+    # So do depth maps that show it.
+    shown = placed([one], mesh=far, looked=[3], sparse=sparse, depth=plates.depth_maps_of(far, [2, 3, 4]))[0]
+    assert (shown.row.outcome, shown.row.z) == ("mapped", pytest.approx(FAR, abs=1e-3))
 
 
 def test_sparse_points_at_two_depths_give_one_of_them_and_never_nothing() -> None:

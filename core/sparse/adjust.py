@@ -135,7 +135,9 @@ def adjust(
         # Squares first: they converge in a fifth of the time and leave little to do.
         schedule.append(adjustment_options(False, loss_scale_px, threads))
     free = adjustment_options(True, loss_scale_px, threads)
-    rounds, stable = _refine(work, cache, options, schedule, lambda r: progress(0.5 * r, "bundle adjustment"))
+    # Keypoints that move next need no model that fits them where they are.
+    most = MAX_ROUNDS if align is None else len(schedule)
+    rounds, stable = _refine(work, cache, options, schedule, most, lambda r: progress(0.5 * r, "bundle adjustment"))
     progress(0.5, "keypoints and tracks")
     trimming, aligned = _settle(work, schedule[-1], align, trim_tracks, threads)
     found = PrincipalPoint(False, "off")
@@ -149,7 +151,9 @@ def adjust(
             more = trim(work, lambda scale: adjustment_options(True, scale, threads), TERMS[-1:])
             trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
         elif found.refined:
-            further, stable = _refine(work, cache, options, [free], lambda r: progress(0.7 + 0.3 * r, "adjustment"))
+            further, stable = _refine(
+                work, cache, options, [free], MAX_ROUNDS, lambda r: progress(0.7 + 0.3 * r, "adjustment")
+            )
             rounds += further
     if trimming is not None:
         progress(0.9, "points")
@@ -238,11 +242,11 @@ def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int
 
 
 def _refine(
-    model: Any, cache: Any, options: Any, schedule: Sequence[Any], progress: Callable[[float], None]
+    model: Any, cache: Any, options: Any, schedule: Sequence[Any], most: int, progress: Callable[[float], None]
 ) -> tuple[int, bool]:
     """Rounds of completing, adjusting and filtering in place; how many, and whether the last changed nothing.
 
-    Each entry of `schedule` adjusts one round; the last goes on until nothing changes.
+    Each entry of `schedule` adjusts one round; the last goes on until nothing changes, for `most` rounds in all.
     """
     triangulation, mapping = options.get_triangulation(), options.get_mapper()
     mapper = pycolmap.IncrementalMapper(cache)
@@ -254,8 +258,8 @@ def _refine(
     # Poses and lens follow from the tracks that cover every image; the other points follow from them.
     mapping.ba_global_ignore_redundant_points3D = True
     rounds, stable = 0, False
-    while (rounds < len(schedule) or (rounds < MAX_ROUNDS and not stable)) and model.num_points3D():
-        progress(rounds / MAX_ROUNDS)
+    while (rounds < len(schedule) or (rounds < most and not stable)) and model.num_points3D():
+        progress(rounds / most)
         changed = mapper.complete_and_merge_tracks(triangulation)
         changed += mapper.retriangulate(triangulation)
         mapper.adjust_global_bundle(mapping, schedule[min(rounds, len(schedule) - 1)])

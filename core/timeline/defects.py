@@ -15,6 +15,7 @@ from core.mapping.rows import DetectionRow
 from core.mapping.scene import Scene
 from core.mapping.surface_rules import Observation
 from core.outputs import evidence_name
+from core.roi import Crop
 from core.timeline.events import EventRow, leading_label
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.merging import merge_alike
@@ -25,6 +26,10 @@ F64 = NDArray[np.float64]
 
 MIN_EXISTENCE = 0.5
 """A place whose detections are more likely inventions than not makes no record."""
+SMALLEST_SHARE = 0.05
+"""Quantile of the boxes' sizes that stands for the smallest;"""
+SMALLEST_SLACK = 0.9
+"""what is expected to show at this share of it may well be detected."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,7 @@ class Defect:
     k: int
     """Frames with a detection of it."""
     n: int
-    """Frames that could show it: those of the sightings that the detector saw, and the k."""
+    """Frames that could show it: those of the sightings that the detector saw, large enough for it, and the k."""
     exists: float
     visits: tuple[tuple[int, ...], ...]
     """Frame indices with a detection, by visit."""
@@ -72,7 +77,8 @@ def find_defects(
     """
     looked = set(scene.views.frame_index[scene.frames.rows].tolist())
     groups = merge_alike(group_observations(observations), observations, scene.views, scene.crop)
-    candidates = [_defect(members, observations, scene, times_s, looked) for members in groups]
+    smallest = _smallest_px(observations, scene.crop)
+    candidates = [_defect(members, observations, scene, times_s, looked, smallest) for members in groups]
     recall = _recall(candidates)
     candidates = [replace(defect, exists=existence(defect.k, defect.n, recall)) for defect in candidates]
     updated = list(observations)
@@ -92,6 +98,7 @@ def _defect(
     scene: Scene,
     times_s: Mapping[int, float],
     looked: set[int],
+    smallest_px: float,
 ) -> Defect:
     own = [observations[k] for k in members]
     place, sigma = fused_place(own)
@@ -101,7 +108,8 @@ def _defect(
     points = _core(own, place)
     seen = views_of_place(points, normal, scene.views, scene.surface, scene.tolerance, nearest[0], scene.crop)
     detected = sorted({one.row.frame_index for one in own if one.row.frame_index is not None}, key=lambda i: times_s[i])
-    n = len(set(detected) | {sighting.frame_index for sighting in seen if sighting.frame_index in looked})
+    asked = [sighting.frame_index for sighting in seen if sighting.frame_index in looked]
+    n = len(set(detected) | set(_large_enough(asked, own, place, scene, smallest_px)))
     return Defect(
         tuple(members),
         nearest[0],
@@ -113,6 +121,29 @@ def _defect(
         0.0,
         tuple(tuple(visit) for visit in visits(detected, [s.frame_index for s in seen], times_s)),
     )
+
+
+def _smallest_px(observations: Sequence[Observation], crop: Crop) -> float:
+    """Side of the smallest boxes that this detector drew: what a frame shows smaller is not expected of it."""
+    sides = [_side_px(one, crop) for one in observations if one.row.outcome == "mapped"]
+    return float(np.quantile(sides, SMALLEST_SHARE)) if sides else 0.0
+
+
+def _side_px(one: Observation, crop: Crop) -> float:
+    """Of the square with the area of its box, source px."""
+    width, height = one.row.box_x2 - one.row.box_x1, one.row.box_y2 - one.row.box_y1
+    return float(np.sqrt(max(width * crop.source_width * height * crop.source_height, 0.0)))
+
+
+def _large_enough(
+    frames: Sequence[int], own: Sequence[Observation], place: F64, scene: Scene, smallest_px: float
+) -> list[int]:
+    """Of the frames, those that show a place at least as large as the detector's smallest boxes, by its own boxes."""
+    distance = np.linalg.norm(scene.views.centers - place, axis=1)
+    away = dict(zip(scene.views.frame_index.tolist(), distance.tolist(), strict=True))
+    sizes = [_side_px(one, scene.crop) * away[one.row.frame_index] for one in own if one.row.frame_index in away]
+    size = float(np.median(sizes)) if sizes else np.inf
+    return [frame for frame in frames if size >= SMALLEST_SLACK * smallest_px * away[frame]]
 
 
 def _core(own: Sequence[Observation], place: F64) -> F64:

@@ -91,6 +91,19 @@ def test_what_most_frames_deny_makes_no_record_and_stays_in_the_table() -> None:
     assert all((one.row.confidence or 0.0) < min(kept) for one in again.observations[10:])  # type: ignore[type-var]
 
 
+def test_frames_that_show_it_smaller_than_any_box_are_not_asked() -> None:
+    detections = in_turn([A], range(4))
+    made = scene(FRAMES, detections)
+    observations = place_on_surface(detections, made, times(), plates.no_matches, 0.4)
+    t = made.views.t.copy()
+    t[5:, 2] += 6.0  # the cameras of the later frames stand far back
+    back = replace(made, views=replace(made.views, t=t))
+    near, far = (find_defects(observations, one, times().time_of_index).defects[0] for one in (made, back))
+    assert (near.k, near.n) == (4, 10)
+    assert (far.k, far.n) == (4, 5)
+    assert far.exists > near.exists
+
+
 def test_existence_weighs_hits_against_misses() -> None:
     assert existence(1, 1, 0.5) > 0.9
     assert existence(1, 12, 0.5) < 0.1

@@ -56,7 +56,17 @@ STAGES: dict[str, StageSpec] = {
         _spec("annotations", "input.time_convention", version=2, reads_annotations=True, weight=0.1),
         _spec("frames", "frames", "roi", "overrides", version=2, reads_video=True, weight=0.3),
         _spec("features", "features", version=2, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
-        _spec("focal", "camera", "matching.ratio", "verification", *_FOCAL_MAPPER, "seed", fan_out=True, weight=7),
+        _spec(
+            "focal",
+            "camera",
+            "matching.ratio",
+            "verification",
+            *_FOCAL_MAPPER,
+            "seed",
+            fan_out=True,
+            version=2,
+            weight=7,
+        ),
         _spec("camera", "camera", weight=0.1),
         _spec(
             "matches",

@@ -101,6 +101,7 @@ def map_images(
     *,
     pairs: Sequence[tuple[int, int]] = (),
     start_model: Any | None = None,
+    search: bool = True,
     progress: Progress | None = None,
 ) -> list[Any]:
     """All models that the images of `cache` give; empty when none.
@@ -112,6 +113,7 @@ def map_images(
             gives a model of half of the images, COLMAP's own search follows.
         start_model: go on from this model instead (set ``options.fix_existing_frames`` to hold its poses).
             Its frames that are not in `cache` are dropped; it is not changed.
+        search: without it COLMAP's own search is left out; where nothing fits it takes minutes to say so.
         progress: see `Progress`.
     """
     if start_model is not None:
@@ -121,7 +123,7 @@ def map_images(
         models += _grow(cache, _from_pair(options, pair), pycolmap.Reconstruction(), progress)
         if _largest(models) >= WHOLE_SHARE * cache.num_images():
             break
-    if _largest(models) < ENOUGH_SHARE * cache.num_images():
+    if search and _largest(models) < ENOUGH_SHARE * cache.num_images():
         models += _search(cache, options, progress)
     return models
 

@@ -96,7 +96,7 @@ def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Loa
     # One radial term is little enough to be free from the start.
     options.ba_refine_extra_params = True
     options.mapper.abs_pose_refine_extra_params = True
-    models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked], search=False)
+    models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
     model = best_model(models)
     if model is None:
         return nothing

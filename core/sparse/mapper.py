@@ -67,7 +67,7 @@ def mapper_options(settings: MapperSettings, *, threads: int, seed: int, tuned: 
     """`IncrementalPipelineOptions` with the thesis's thresholds.
 
     `tuned` spends less on bundle adjustment while the model grows: equal output, measured, at about half of the
-    cost. Without it everything else is COLMAP's default.
+    cost. Without it everything else is COLMAP's default but for the registration without structure.
     """
     options = pycolmap.IncrementalPipelineOptions()
     options.min_model_size = settings.min_model_size
@@ -78,6 +78,9 @@ def mapper_options(settings: MapperSettings, *, threads: int, seed: int, tuned: 
     # registered with them free and 60 with them held.
     options.ba_refine_extra_params = settings.refine_distortion
     options.mapper.abs_pose_refine_extra_params = settings.refine_distortion
+    # Ten seconds for every image that it fails on: a dark stretch took minutes per start. What it does register hangs
+    # on the model by no point.
+    options.structure_less_registration_fallback = False
     options.mapper.init_min_num_inliers = settings.init_min_num_inliers
     options.mapper.abs_pose_min_num_inliers = settings.abs_pose_min_num_inliers
     options.mapper.abs_pose_min_inlier_ratio = settings.abs_pose_min_inlier_ratio
@@ -101,7 +104,6 @@ def map_images(
     *,
     pairs: Sequence[tuple[int, int]] = (),
     start_model: Any | None = None,
-    search: bool = True,
     progress: Progress | None = None,
 ) -> list[Any]:
     """All models that the images of `cache` give; empty when none.
@@ -113,7 +115,6 @@ def map_images(
             gives a model of half of the images, COLMAP's own search follows.
         start_model: go on from this model instead (set ``options.fix_existing_frames`` to hold its poses).
             Its frames that are not in `cache` are dropped; it is not changed.
-        search: without it COLMAP's own search is left out; where nothing fits it takes minutes to say so.
         progress: see `Progress`.
     """
     if start_model is not None:
@@ -123,7 +124,7 @@ def map_images(
         models += _grow(cache, _from_pair(options, pair), pycolmap.Reconstruction(), progress)
         if _largest(models) >= WHOLE_SHARE * cache.num_images():
             break
-    if search and _largest(models) < ENOUGH_SHARE * cache.num_images():
+    if _largest(models) < ENOUGH_SHARE * cache.num_images():
         models += _search(cache, options, progress)
     return models
 

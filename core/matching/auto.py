@@ -68,7 +68,7 @@ class PairMatcher:
         self._network: Any = None
         self._units = _LastUsed(lambda features: unit_descriptors(features.descriptors))
 
-    def match(self, first: FrameFeatures, second: FrameFeatures, rematch: bool = True) -> MatchedPair:
+    def match(self, first: FrameFeatures, second: FrameFeatures, *, rematch: bool = True) -> MatchedPair:
         """Verified matches of two frames.
 
         `auto` takes mutual nearest neighbours. Where too few or too small a share of them pass the

@@ -6,6 +6,7 @@ Files first, tables then, `summary.json` last. What an earlier run published and
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,9 @@ def publish(record: RunRecord, folders: Mapping[str, Path], out: Path, hidden: P
     """
     store = ArtifactStore(out)
     known = _load(hidden / _LIST)
+    # One run at a time works here: what a killed one left is nobody's.
+    for left in hidden.glob("tables-*"):
+        shutil.rmtree(left, ignore_errors=True)
     with collected(record, folders, hidden) as wanted:
         # Its presence says that everything else is of one run, so it goes first and comes last.
         store.remove("summary.json")

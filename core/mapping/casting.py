@@ -17,7 +17,7 @@ from core.mapping.pixels import Footprint
 from core.mapping.scene import Scene, places_nearest
 from core.mapping.sigma import place_sigma
 from core.mapping.support import Box
-from core.mapping.support_check import Agreement, depth_agreement
+from core.mapping.support_check import depth_agreement
 from core.mapping.surface import Hits
 
 F64 = NDArray[np.float64]
@@ -75,12 +75,25 @@ class Missed:
     surface lies there."""
 
 
+@dataclass(frozen=True)
+class _Sparse:
+    """Sparse points in the box of a sight."""
+
+    ids: I64
+    """(n,)"""
+    points: F64
+    """(n, 3)"""
+    distance: F64
+    """(n,) from the camera."""
+
+
 def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
     """Place every sight, in order."""
     candidates: list[Candidate] = []
     outcome: list[Cast | Missed] = [Missed("off_surface") for _ in sights]
+    boxed = [_sparse_in_box(scene, sight) for sight in sights]
     for row, sight in enumerate(sights):
-        found, blocked = _candidates(scene, row, sight)
+        found, blocked = _candidates(scene, row, sight, boxed[row])
         if not found and blocked:
             outcome[row] = Missed("occluded")
         candidates += found
@@ -90,11 +103,12 @@ def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
     chosen = choose(candidates, said)
     recall = _recall(said, [row for row, _ in chosen.values()])
     for detection, (row, lead) in chosen.items():
-        outcome[detection] = _cast(scene, sights[detection], candidates[row], said, row, lead, recall)
+        sight, sparse = sights[detection], boxed[detection]
+        outcome[detection] = _cast(scene, sight, sparse, candidates[row], said, row, lead, recall)
     return outcome
 
 
-def _candidates(scene: Scene, row: int, sight: Sight) -> tuple[list[Candidate], bool]:
+def _candidates(scene: Scene, row: int, sight: Sight, boxed: _Sparse) -> tuple[list[Candidate], bool]:
     """Patches large enough, and whether the pixels meet only the back of the surface.
 
     No camera sees the back of a solid, so rays go on through backs. But where a thin blade was seen from both sides
@@ -103,12 +117,12 @@ def _candidates(scene: Scene, row: int, sight: Sight) -> tuple[list[Candidate], 
     """
     rays = scene.views.rays(sight.samples.xy, sight.R)
     origins = np.broadcast_to(sight.origin, rays.shape)
-    front = scene.surface.cast_front(origins, rays, 0.5 * scene.spacing)
-    found = [_candidate(scene, row, sight, patch) for patch in _large(scene, sight, rays, front)]
     first = scene.surface.cast(origins, rays)
+    front = scene.surface.cast_front(first, origins, rays, 0.5 * scene.spacing)
+    found = [_candidate(scene, row, sight, patch, boxed) for patch in _large(scene, sight, rays, front)]
     if (first.cosine[first.hit] < 0).any():
         turned = _large(scene, sight, rays, replace(first, cosine=np.abs(first.cosine)))
-        found += filter(is_witnessed, (_candidate(scene, row, sight, patch) for patch in turned))
+        found += filter(is_witnessed, (_candidate(scene, row, sight, patch, boxed) for patch in turned))
     nearest = min((candidate.patch.distance for candidate in found), default=0.0)
     found = [replace(candidate, nearest=candidate.patch.distance == nearest) for candidate in found]
     return found, bool((front.hit & (front.cosine <= 0)).any())
@@ -119,9 +133,9 @@ def _large(scene: Scene, sight: Sight, rays: F64, hits: Hits) -> list[Patch]:
     return [patch for patch in patches if patch.share >= MIN_SHARE]
 
 
-def _candidate(scene: Scene, row: int, sight: Sight, patch: Patch) -> Candidate:
+def _candidate(scene: Scene, row: int, sight: Sight, patch: Patch, boxed: _Sparse) -> Candidate:
     depth = seen_share(scene.depth, sight.frame, patch.points, scene.spacing)
-    sparse = _sparse(scene, sight, patch)[0].share
+    sparse = depth_agreement(boxed.distance, patch.distance, scene.spacing).share
     return Candidate(row, patch, patch.centroid, _normal(scene, patch, sight.origin), False, depth, sparse)
 
 
@@ -157,10 +171,17 @@ def _recall(said: Testimony, rows: Sequence[int]) -> float:
 
 
 def _cast(
-    scene: Scene, sight: Sight, candidate: Candidate, said: Testimony, row: int, lead: float, recall: float
+    scene: Scene,
+    sight: Sight,
+    boxed: _Sparse,
+    candidate: Candidate,
+    said: Testimony,
+    row: int,
+    lead: float,
+    recall: float,
 ) -> Cast:
     visible, support = int(said.n_visible[row]), int(said.n_support[row])
-    _, ids, points = _sparse(scene, sight, candidate.patch)
+    near = np.abs(boxed.distance - candidate.patch.distance) <= max(2.0 * candidate.patch.radius, scene.tolerance)
     cloud, _ = scene.cloud.query(candidate.place)
     x1, y1, x2, y2 = sight.box_px
     in_cam = sight.R @ (candidate.place - sight.origin)
@@ -185,19 +206,17 @@ def _cast(
         parts=parts,
         sigma=place_sigma(in_cam, pose, side, sight.samples.outline, scene.focal_px, scene.spacing),
         contradicted=support == 0 and visible >= MIN_VISIBLE and (1.0 - recall) ** visible < MAX_CHANCE,
-        point_ids=ids,
-        points=points,
+        point_ids=boxed.ids[near],
+        points=boxed.points[near],
     )
 
 
-def _sparse(scene: Scene, sight: Sight, patch: Patch) -> tuple[Agreement, I64, F64]:
-    """Do the sparse points of the box agree, and which of them lie on the patch?"""
+def _sparse_in_box(scene: Scene, sight: Sight) -> _Sparse:
+    """None where the pose is an estimate: no point was observed there."""
     if sight.view is None:
-        return Agreement(None, 0), np.zeros(0, np.int64), np.zeros((0, 3))
+        return _Sparse(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
     xy, ids, points = scene.sparse.of(int(scene.views.frame_index[sight.view]))
     x1, y1, x2, y2 = sight.box_px
     inside = (xy[:, 0] >= x1) & (xy[:, 0] <= x2) & (xy[:, 1] >= y1) & (xy[:, 1] <= y2)
     distance = np.linalg.norm(points[inside] - sight.origin, axis=1)
-    agreement = depth_agreement(distance, patch.distance, scene.spacing)
-    near = np.abs(distance - patch.distance) <= max(2.0 * patch.radius, scene.tolerance)
-    return agreement, ids[inside][near], points[inside][near]
+    return _Sparse(ids[inside], points[inside], distance)

@@ -59,18 +59,18 @@ class Surface:
         face = np.where(hit, answer["primitive_ids"].numpy().astype(np.int64), -1)
         return Hits(hit, distance, -(normal * directions).sum(axis=1), face)
 
-    def cast_front(self, origins: F64, directions: F64, step: float) -> Hits:
+    def cast_front(self, first: Hits, origins: F64, directions: F64, step: float) -> Hits:
         """First hits that see a face from its front, going on through backs.
 
         No camera sees the back of a solid: a back before a front is a stray sheet. Rays that meet nothing but
         backs keep their first.
 
         Args:
+            first: what `cast` finds for these rays.
             origins: (n, 3)
             directions: (n, 3) unit.
             step: by which a ray goes on behind a back, scene units.
         """
-        first = self.cast(origins, directions)
         distance, cosine, face = first.distance.copy(), first.cosine.copy(), first.face.copy()
         behind = np.flatnonzero(first.hit & (first.cosine <= 0))
         gone = first.distance[behind] + step

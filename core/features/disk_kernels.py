@@ -11,9 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from core.jit import compiled
 
 Array = NDArray[np.float32]
 
@@ -21,10 +22,8 @@ Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 
 def _jit(function: Kernel) -> Kernel:
-    compiled: Kernel = numba.njit(
-        cache=True, nogil=True, fastmath={"contract", "reassoc", "nsz", "arcp"}, error_model="numpy"
-    )(function)
-    return compiled
+    made: Kernel = compiled(function, fastmath={"contract", "reassoc", "nsz", "arcp"}, error_model="numpy")
+    return made
 
 
 @_jit

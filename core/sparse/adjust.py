@@ -28,6 +28,7 @@ from core.sparse.trimming import (
     keep_first,
     move_points,
     set_lens,
+    solve,
     trim,
     whole,
 )
@@ -178,7 +179,7 @@ def _settle(
             found = trim(work, lambda scale: adjustment_options(False, scale, threads), terms)
             trimming = found if trimming is None else replace(found, rounds=trimming.rounds + found.rounds)
         elif align is not None:
-            pycolmap.create_default_ceres_bundle_adjuster(options, whole(work), work).solve()
+            solve(work, options)
     return trimming, aligned
 
 

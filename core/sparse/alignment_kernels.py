@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from core.sparse.jit import compiled
+from core.jit import compiled
 
 FLAT = 1.0
 """Contrast (grey levels) below which a patch shows nothing."""

@@ -64,6 +64,8 @@ class _Tracks:
 
     point_ids: I64
     """(n,)"""
+    xyz: F64
+    """(n, 3)"""
     normals: F64
     """(n, 3) of the surface, towards the cameras."""
     reference: I64
@@ -114,15 +116,17 @@ def align_keypoints(
     tracks = _tracks(model, views)
     if not len(tracks.point):
         return Aligned(0, 0, 0.0)
-    camera = next(iter(model.cameras.values()))
-    xyz = np.array([model.point3D(int(i)).xyz for i in tracks.point_ids])
-    warps = _warps(tracks, views, camera, xyz)
+    warps = _warps(tracks, views, next(iter(model.cameras.values())))
+    references = _by_image(tracks.reference, len(views.ids))
+    finite = np.asarray(np.isfinite(warps).all(axis=(1, 2)), np.bool_)
+    others = _by_image(tracks.image, len(views.ids), finite)
+    weights = _weights()
     moving = None if still is None else ~cv2.dilate(still.astype(np.uint8), np.ones((2 * RADIUS + 3,) * 2)).astype(bool)
-    patches = np.empty((len(xyz), 2 * RADIUS + 3, 2 * RADIUS + 3), np.float32)
+    patches = np.empty((len(tracks.xyz), 2 * RADIUS + 3, 2 * RADIUS + 3), np.float32)
     places, found = tracks.xy - PIXEL_CENTRE, np.full(len(tracks.xy), -1.0)
 
     def take(row: int) -> None:
-        own = np.flatnonzero(tracks.reference == row)
+        own = references[row]
         at = tracks.reference_xy[own] - PIXEL_CENTRE
         out = np.empty((len(own), *patches.shape[1:]), np.float32)
         take_patches(_smooth(read(views.names[row])), at, out)
@@ -130,13 +134,11 @@ def align_keypoints(
         patches[own] = out
 
     def align(row: int) -> None:
-        own = np.flatnonzero((tracks.image == row) & np.isfinite(warps).all(axis=(1, 2)))
+        own = others[row]
         start = places[own]
         at = start.copy()
         image = _smooth(read(views.names[row]))
-        score = align_patches(
-            image, patches[tracks.point[own]], warps[own], _weights(), MAX_ITERATIONS, MAX_SHIFT_PX, at
-        )
+        score = align_patches(image, patches[tracks.point[own]], warps[own], weights, MAX_ITERATIONS, MAX_SHIFT_PX, at)
         found[own] = np.where(_on(moving, start), score, -1.0)
         places[own] = at
 
@@ -147,6 +149,13 @@ def align_keypoints(
     _write(model, views, tracks, places + PIXEL_CENTRE, good, drop)
     shift = np.linalg.norm(places + PIXEL_CENTRE - tracks.xy, axis=1)[good]
     return Aligned(len(good), int(good.sum()), float(np.median(shift)) if good.any() else 0.0)
+
+
+def _by_image(image: I64, count: int, wanted: Bool | None = None) -> list[I64]:
+    """Rows of each of `count` images, in order; only those that are wanted."""
+    rows = np.arange(len(image)) if wanted is None else np.flatnonzero(wanted)
+    rows = rows[np.argsort(image[rows], kind="stable")]
+    return np.split(rows, np.searchsorted(image[rows], np.arange(1, count)))
 
 
 def _smooth(picture: NDArray[np.uint8]) -> F32:
@@ -203,8 +212,8 @@ def _tracks(model: Any, views: _Views) -> _Tracks:
         others += [(row, image, keypoint) for at, (image, keypoint) in enumerate(track) if at != best]
     of_point, of_image, of_keypoint = np.array(others, np.int64).reshape(-1, 3).T
     xy = np.array([keypoints[image][keypoint] for _, image, keypoint in others]).reshape(-1, 2)
-    normals = _normals(np.array([model.point3D(int(i)).xyz for i in point_ids]).reshape(-1, 3), towards)
-    return _Tracks(point_ids, normals, reference, reference_xy, of_point, of_image, of_keypoint, xy)
+    xyz = np.array([model.point3D(int(i)).xyz for i in point_ids]).reshape(-1, 3)
+    return _Tracks(point_ids, xyz, _normals(xyz, towards), reference, reference_xy, of_point, of_image, of_keypoint, xy)
 
 
 def _normals(xyz: F64, towards: F64) -> F64:
@@ -221,23 +230,23 @@ def _normals(xyz: F64, towards: F64) -> F64:
     return found
 
 
-def _warps(tracks: _Tracks, views: _Views, camera: Any, xyz: F64) -> F64:
+def _warps(tracks: _Tracks, views: _Views, camera: Any) -> F64:
     """(m, 2, 2) derivative of a place in the image by one in the reference, over the plane of the point."""
     step = 2.0
     columns = [
-        (_carried(tracks, views, camera, xyz, offset) - _carried(tracks, views, camera, xyz, -offset)) / (2 * step)
+        (_carried(tracks, views, camera, offset) - _carried(tracks, views, camera, -offset)) / (2 * step)
         for offset in step * np.eye(2)
     ]
     return np.stack(columns, axis=-1)
 
 
-def _carried(tracks: _Tracks, views: _Views, camera: Any, xyz: F64, offset: F64) -> F64:
+def _carried(tracks: _Tracks, views: _Views, camera: Any, offset: F64) -> F64:
     """(m, 2) where the images see what lies on the point's plane at this offset (px) from the reference's keypoint."""
     flat = np.asarray(camera.cam_from_img(np.ascontiguousarray(tracks.reference_xy + offset))).reshape(-1, 2)
     ray = np.einsum("nji,nj->ni", views.R[tracks.reference], np.hstack([flat, np.ones((len(flat), 1))]))
     center = views.centers[tracks.reference]
     with np.errstate(divide="ignore", invalid="ignore"):
-        depth = ((xyz - center) * tracks.normals).sum(axis=1) / (ray * tracks.normals).sum(axis=1)
+        depth = ((tracks.xyz - center) * tracks.normals).sum(axis=1) / (ray * tracks.normals).sum(axis=1)
     on_plane = (center + depth[:, None] * ray)[tracks.point]
     seen = np.einsum("nij,nj->ni", views.R[tracks.image], on_plane) + views.t[tracks.image]
     carried: F64 = np.full((len(seen), 2), np.nan)
@@ -252,9 +261,9 @@ def _write(model: Any, views: _Views, tracks: _Tracks, xy: F64, good: Bool, drop
     left = np.bincount(tracks.reference, minlength=len(views.ids))
     left += np.bincount(tracks.image[good], minlength=len(views.ids))
     doomed = ~good & drop & (left >= MIN_PER_IMAGE)[tracks.image]
-    for row, image_id in enumerate(views.ids):
+    for image_id, moved in zip(views.ids, _by_image(tracks.image, len(views.ids), good), strict=True):
         points = model.image(image_id).points2D
-        for at in np.flatnonzero(good & (tracks.image == row)).tolist():
+        for at in moved.tolist():
             points[int(tracks.keypoint[at])].xy = xy[at]
     for at in np.flatnonzero(doomed).tolist():
         point_id = int(tracks.point_ids[tracks.point[at]])

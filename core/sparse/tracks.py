@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import pycolmap
 
-from core.sparse.jit import compiled
+from core.jit import compiled
 from core.sparse.view_graph import Frames
 from core.viewgraph import PairTable
 

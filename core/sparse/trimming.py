@@ -90,7 +90,7 @@ def trim(model: Any, options: Options, terms: Sequence[int] = TERMS) -> Trimming
             if admit:
                 part = pycolmap.Reconstruction(model)
                 kept = keep_admitted(part, ADMITTED * scale)
-            _solve(part, options(scale))
+            solve(part, options(scale))
             _take_cameras(model, part)
             move_points(model, options(POINT_LOSS_PX))
             rounds += 1
@@ -173,7 +173,8 @@ def whole(model: Any) -> Any:
     return config
 
 
-def _solve(model: Any, options: Any) -> None:
+def solve(model: Any, options: Any) -> None:
+    """Adjust everything in a model in place."""
     pycolmap.create_default_ceres_bundle_adjuster(options, whole(model), model).solve()
 
 
@@ -181,7 +182,7 @@ def move_points(model: Any, options: Any) -> None:
     """Adjust the points alone in place."""
     options.refine_focal_length = options.refine_extra_params = options.refine_principal_point = False
     options.refine_rig_from_world = options.refine_sensor_from_rig = False
-    _solve(model, options)
+    solve(model, options)
 
 
 def _take_cameras(model: Any, source: Any) -> None:

@@ -20,13 +20,12 @@ from numpy.typing import NDArray
 
 from core.sparse.keypoint_alignment import Aligned
 from core.sparse.mapper import model_stats
+from core.sparse.points import move_points, observe
 from core.sparse.trimming import (
     POINT_LOSS_PX,
     TERMS,
     Trimming,
     keep_agreeing,
-    keep_first,
-    move_points,
     set_lens,
     solve,
     trim,
@@ -159,7 +158,7 @@ def adjust(
     if trimming is not None:
         progress(0.9, "points")
         set_lens(work, 4)
-        _retrack(work, cache, options, adjustment_options(False, POINT_LOSS_PX, threads), align)
+        _retrack(work, cache, options, align)
     after = model_stats(work).mean_reprojection_error_px
     return Adjustment(work, rounds, stable, before, after, found, trimming, aligned)
 
@@ -223,8 +222,9 @@ def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
 
 def keep_covering_points(model: Any, per_image: int) -> None:
     """Delete points in place, all but the longest tracks that give every image `per_image` of them (if it has them)."""
-    order = sorted(model.point3D_ids(), key=lambda i: (-model.point3D(i).track.length(), i))
-    keep_first(model, order, lambda _: per_image)
+    seen = observe(model)
+    order = np.argsort(-seen.lengths, kind="stable")
+    seen.keep(model, seen.first(order, np.full(len(order), per_image)))
 
 
 def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> Any:
@@ -271,7 +271,7 @@ def _refine(
     return rounds, stable
 
 
-def _retrack(model: Any, cache: Any, options: Any, points: Any, align: Align | None) -> None:
+def _retrack(model: Any, cache: Any, options: Any, align: Align | None) -> None:
     """Complete and filter the tracks in place, with cameras that stay as they are."""
     triangulation, mapping = options.get_triangulation(), options.get_mapper()
     mapper = pycolmap.IncrementalMapper(cache)
@@ -281,7 +281,7 @@ def _retrack(model: Any, cache: Any, options: Any, points: Any, align: Align | N
     mapper.retriangulate(triangulation)
     if align is not None:
         align(model, False)
-    move_points(model, points)
+    move_points(model, observe(model), POINT_LOSS_PX)
     mapper.filter_points(mapping)
     mapper.end_reconstruction(False)
 

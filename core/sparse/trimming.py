@@ -14,14 +14,18 @@ The lens has few terms meanwhile, first one and then two: k3, k4 and a second fo
 
 from __future__ import annotations
 
-import math
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pycolmap
+from numpy.typing import NDArray
+
+from core.sparse.points import Observations, errors_px, move_points, observe
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
 MIN_LENGTH = 4
 """Images of a track that has a say, where there are enough: three can agree by chance."""
@@ -79,20 +83,25 @@ def trim(model: Any, options: Options, terms: Sequence[int] = TERMS) -> Trimming
     """
     before = focal = _focal(model)
     rounds, kept, scale = 0, 0, 0.0
+    seen = observe(model)
+    errors = errors_px(model, seen)
     stages = [(number, MAX_ROUNDS, False) for number in terms] + [(terms[-1], ADMITTED_ROUNDS, True)]
     for number, most, admit in stages:
         set_lens(model, number)
         for _ in range(most):
-            part = pycolmap.Reconstruction(model)
-            kept, scale = keep_agreeing(part)
+            noise = _noise(errors, seen)
+            chosen = agreeing(noise, seen)
+            kept, scale = len(chosen), float(np.median(noise[chosen])) if len(chosen) else 0.0
             if kept == 0:
                 break
             if admit:
-                part = pycolmap.Reconstruction(model)
-                kept = keep_admitted(part, ADMITTED * scale)
+                chosen = admitted(noise, seen, ADMITTED * scale)
+                kept = len(chosen)
+            part = pycolmap.Reconstruction(model)
+            seen.keep(part, chosen)
             solve(part, options(scale))
             _take_cameras(model, part)
-            move_points(model, options(POINT_LOSS_PX))
+            errors = move_points(model, seen, POINT_LOSS_PX)
             rounds += 1
             last, focal = focal, _focal(model)
             if abs(focal / last - 1.0) < SETTLED:
@@ -113,55 +122,44 @@ def set_lens(model: Any, terms: int) -> None:
     camera.params = np.concatenate([focals, center, distortion[:terms]])
 
 
-def keep_agreeing(model: Any, per_image: int = PER_IMAGE) -> tuple[int, float]:
-    """Keep of the points, in place, those of the better half that hold the cameras; how many and their median error.
+def keep_agreeing(model: Any, per_image: int = PER_IMAGE) -> None:
+    """Keep of the points of a model, in place, those that agree best and hold its cameras."""
+    seen = observe(model)
+    seen.keep(model, agreeing(_noise(errors_px(model, seen), seen), seen, per_image))
 
-    Best first, a point stays while one of its images has fewer than `per_image`; beyond the better part of all, and
+
+def agreeing(noise: F64, seen: Observations, per_image: int = PER_IMAGE) -> I64:
+    """Rows of the points of the better half that hold the cameras.
+
+    Best first, a point is taken while one of its images has fewer than `per_image`; beyond the better part of all, and
     short ones after all others, while one has fewer than `MIN_PER_IMAGE`: every camera has to be held.
+
+    Args:
+        noise: (n,) error of every point in px; those that have none are left out.
+        seen: their observations.
+        per_image: points of an image that has as many.
     """
-    noise = _noises(model)
-    short = {point_id: point.track.length() < MIN_LENGTH for point_id, point in model.points3D.items()}
-    limit = float(np.median(list(noise.values()))) if noise else 0.0
-    kept = keep_first(
-        model,
-        sorted(noise, key=lambda i: (short[i], noise[i], i)),
-        lambda i: per_image if noise[i] <= limit and not short[i] else MIN_PER_IMAGE,
-    )
-    return len(kept), float(np.median([noise[point_id] for point_id in kept])) if kept else 0.0
+    finite = np.isfinite(noise)
+    limit = np.median(noise[finite]) if finite.any() else 0.0
+    short = seen.lengths < MIN_LENGTH
+    wanted = np.where((noise <= limit) & ~short, per_image, MIN_PER_IMAGE)
+    order = np.lexsort((noise, short))
+    return seen.first(order[finite[order]], wanted)
 
 
-def keep_admitted(model: Any, limit_px: float) -> int:
-    """Keep of the points, in place, those with an error up to a limit; how many. Every camera is held here too."""
-    noise = _noises(model)
-    wanted = {point_id: ADMITTED_PER_IMAGE if error <= limit_px else MIN_PER_IMAGE for point_id, error in noise.items()}
-    return len(keep_first(model, sorted(noise, key=lambda i: (noise[i], i)), wanted.__getitem__))
+def admitted(noise: F64, seen: Observations, limit_px: float) -> I64:
+    """Rows of the points with an error up to a limit; every camera is held here too. Arguments as of `agreeing`."""
+    order = np.argsort(noise, kind="stable")
+    wanted = np.where(noise <= limit_px, ADMITTED_PER_IMAGE, MIN_PER_IMAGE)
+    return seen.first(order[np.isfinite(noise[order])], wanted)
 
 
-def keep_first(model: Any, order: Sequence[int], wanted: Callable[[int], int]) -> list[int]:
-    """Keep of the points, in place, those in whose turn an image of theirs has fewer than `wanted` of them."""
-    counts: Counter[int] = Counter()
-    kept = []
-    for point_id in order:
-        images = {element.image_id for element in model.point3D(point_id).track.elements}
-        if any(counts[image] < wanted(point_id) for image in images):
-            counts.update(images)
-            kept.append(point_id)
-    for point_id in set(model.point3D_ids()).difference(kept):
-        model.delete_point3D(point_id)
-    return kept
-
-
-def _noises(model: Any) -> dict[int, float]:
-    """Of all points with a finite error."""
-    model.update_point_3d_errors()
-    noise = {point_id: _noise(point) for point_id, point in model.points3D.items()}
-    return {point_id: error for point_id, error in noise.items() if np.isfinite(error)}
-
-
-def _noise(point: Any) -> float:
-    """Mean error in px, of which the fit of the point itself has taken a share: the larger, the shorter the track."""
-    observed = 2 * point.track.length()
-    return float(point.error) * math.sqrt(observed / (observed - 3.0))
+def _noise(errors: F64, seen: Observations) -> F64:
+    """(n,) mean error in px, of which the fit of the point itself has taken a share: the larger, the shorter its track."""
+    observed = 2.0 * seen.lengths
+    with np.errstate(divide="ignore", invalid="ignore"):
+        noise: F64 = errors * np.sqrt(observed / (observed - 3.0))
+    return noise
 
 
 def whole(model: Any) -> Any:
@@ -176,13 +174,6 @@ def whole(model: Any) -> Any:
 def solve(model: Any, options: Any) -> None:
     """Adjust everything in a model in place."""
     pycolmap.create_default_ceres_bundle_adjuster(options, whole(model), model).solve()
-
-
-def move_points(model: Any, options: Any) -> None:
-    """Adjust the points alone in place."""
-    options.refine_focal_length = options.refine_extra_params = options.refine_principal_point = False
-    options.refine_rig_from_world = options.refine_sensor_from_rig = False
-    solve(model, options)
 
 
 def _take_cameras(model: Any, source: Any) -> None:

@@ -1,0 +1,224 @@
+"""Points moved to where fixed cameras see them: each for itself, which a bundle adjuster takes fifty times as long for.
+
+Levenberg and Marquardt's method with Cauchy's loss, weighted anew at each step. The lens is COLMAP's family of
+fisheye models with radial terms (`SIMPLE_RADIAL_FISHEYE`, `RADIAL_FISHEYE`, `OPENCV_FISHEYE`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.jit import compiled
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+MAX_STEPS = 25
+CONVERGED = 1e-6
+"""Steps of a point end when one lowers its cost by less than this share."""
+MAX_DAMPING = 1e8
+"""Steps that are damped more than so are none."""
+
+
+@dataclass(frozen=True)
+class Observations:
+    """What images see of the points of a model; good for as long as its tracks and keypoints stay as they are."""
+
+    point_ids: I64
+    """(n,) rising."""
+    offsets: I64
+    """(n + 1,) first observation of every point."""
+    image_ids: I64
+    """(f,) rising."""
+    image: I64
+    """(m,) row of the image of each observation; rising within a point."""
+    xy: F64
+    """(m, 2) px"""
+
+    @property
+    def lengths(self) -> I64:
+        """(n,) observations of every point."""
+        lengths: I64 = np.diff(self.offsets)
+        return lengths
+
+    def first(self, order: I64, wanted: I64) -> I64:
+        """Rows of the points in whose turn an image of theirs has fewer than `wanted` of those before them.
+
+        Args:
+            order: rows of points, the first choice first.
+            wanted: (n,) how many an image needs to do without this point.
+        """
+        rows: I64 = order[_first(order, self.offsets, self.image, wanted, len(self.image_ids))]
+        return rows
+
+    def keep(self, model: Any, rows: I64) -> None:
+        """Delete all other points of the model in place; these observations describe it no longer."""
+        for point_id in np.delete(self.point_ids, rows).tolist():
+            model.delete_point3D(point_id)
+
+
+def observe(model: Any) -> Observations:
+    """All observations of a `pycolmap.Reconstruction`."""
+    image_ids = sorted(int(i) for i in model.reg_image_ids())
+    seen = [model.image(i).get_observation_points2D() for i in image_ids]
+    image = np.repeat(np.arange(len(seen)), [len(points) for points in seen])
+    point = np.array([p.point3D_id for points in seen for p in points], np.int64)
+    xy = np.array([p.xy for points in seen for p in points]).reshape(-1, 2)
+    order = np.argsort(point, kind="stable")
+    point_ids, counts = np.unique(point, return_counts=True)
+    offsets = np.concatenate([[0], np.cumsum(counts)])
+    return Observations(point_ids, offsets, np.array(image_ids, np.int64), image[order], xy[order])
+
+
+def move_points(model: Any, seen: Observations, loss_px: float) -> F64:
+    """Move all points of a model in place; cameras stay.
+
+    Args:
+        model: `pycolmap.Reconstruction` whose images share one fisheye camera.
+        seen: its observations.
+        loss_px: scale of Cauchy's loss.
+
+    Returns:
+        (n,) mean error of every point in px, in the order of `seen`.
+    """
+    ids = seen.point_ids.tolist()
+    xyz = np.array([model.point3D(i).xyz for i in ids]).reshape(-1, 3)
+    R, t, lens = _cameras(model, seen)
+    _move(xyz, seen.offsets, seen.image, seen.xy, R, t, lens, loss_px)
+    for point_id, place in zip(ids, xyz, strict=True):
+        model.point3D(point_id).xyz = place
+    found: F64 = _errors(xyz, seen.offsets, seen.image, seen.xy, R, t, lens)
+    return found
+
+
+def errors_px(model: Any, seen: Observations) -> F64:
+    """(n,) mean error of every point in px, where it is."""
+    xyz = np.array([model.point3D(i).xyz for i in seen.point_ids.tolist()]).reshape(-1, 3)
+    found: F64 = _errors(xyz, seen.offsets, seen.image, seen.xy, *_cameras(model, seen))
+    return found
+
+
+def _cameras(model: Any, seen: Observations) -> tuple[F64, F64, F64]:
+    """Rotations (f, 3, 3), translations (f, 3) and (fx, fy, cx, cy, k1, k2, k3, k4)."""
+    poses = [model.image(i).cam_from_world() for i in seen.image_ids.tolist()]
+    camera = next(iter(model.cameras.values()))
+    params, lens = np.array(camera.params), np.zeros(8)
+    lens[:2] = params[camera.focal_length_idxs()]
+    lens[2:4] = params[camera.principal_point_idxs()]
+    radial = params[camera.extra_params_idxs()]
+    lens[4 : 4 + len(radial)] = radial
+    R = np.array([pose.rotation.matrix() for pose in poses]).reshape(-1, 3, 3)
+    return R, np.array([pose.translation for pose in poses]).reshape(-1, 3), lens
+
+
+@compiled
+def _first(order: Any, offsets: Any, image: Any, wanted: Any, n_images: int) -> Any:
+    counts, taken = np.zeros(n_images, np.int64), np.zeros(len(order), np.bool_)
+    for position in range(len(order)):
+        point = order[position]
+        for k in range(offsets[point], offsets[point + 1]):
+            if counts[image[k]] < wanted[point]:
+                taken[position] = True
+                break
+        if taken[position]:
+            for k in range(offsets[point], offsets[point + 1]):
+                # A track that sees an image twice is one point of it.
+                if k == offsets[point] or image[k] != image[k - 1]:
+                    counts[image[k]] += 1
+    return taken
+
+
+@compiled
+def _project(place: Any, R: Any, t: Any, lens: Any, jacobian: Any) -> tuple[float, float]:
+    """Pixel where a camera sees a place (3,); the derivative by the place goes to `jacobian` (2, 3)."""
+    x = R[0, 0] * place[0] + R[0, 1] * place[1] + R[0, 2] * place[2] + t[0]
+    y = R[1, 0] * place[0] + R[1, 1] * place[1] + R[1, 2] * place[2] + t[1]
+    z = R[2, 0] * place[0] + R[2, 1] * place[1] + R[2, 2] * place[2] + t[2]
+    # On the axis the direction from it is any; the limit is that of a very small radius.
+    radius = max(np.sqrt(x * x + y * y), 1e-9 * abs(z), 1e-150)
+    theta = np.arctan2(radius, z)
+    t2 = theta * theta
+    bent = theta * (1.0 + t2 * (lens[4] + t2 * (lens[5] + t2 * (lens[6] + t2 * lens[7]))))
+    slope = 1.0 + t2 * (3.0 * lens[4] + t2 * (5.0 * lens[5] + t2 * (7.0 * lens[6] + t2 * 9.0 * lens[7])))
+    scale = bent / radius
+    square = radius * radius + z * z
+    # The two ways in which the pixel's distance from the centre changes: by the radius and by the depth.
+    by_radius = (slope * z / square - scale) / (radius * radius)
+    by_depth = -slope / square
+    for j in range(3):
+        across = by_radius * (x * R[0, j] + y * R[1, j]) + by_depth * R[2, j]
+        jacobian[0, j] = lens[0] * (scale * R[0, j] + x * across)
+        jacobian[1, j] = lens[1] * (scale * R[1, j] + y * across)
+    return lens[2] + lens[0] * x * scale, lens[3] + lens[1] * y * scale
+
+
+@compiled
+def _cost(place: Any, begin: int, end: int, image: Any, xy: Any, R: Any, t: Any, lens: Any, loss: float) -> float:
+    jacobian, total = np.empty((2, 3)), 0.0
+    for k in range(begin, end):
+        u, v = _project(place, R[image[k]], t[image[k]], lens, jacobian)
+        total += loss * loss * np.log1p(((u - xy[k, 0]) ** 2 + (v - xy[k, 1]) ** 2) / (loss * loss))
+    return total
+
+
+@compiled
+def _step(A: Any, b: Any, damping: float, out: Any) -> None:
+    """Solve (A + damping diag A) x = b, A symmetric (3, 3), by its cofactors; NaN where it cannot be solved."""
+    d0, d1, d2 = A[0, 0] * (1.0 + damping), A[1, 1] * (1.0 + damping), A[2, 2] * (1.0 + damping)
+    a, c, e = A[0, 1], A[0, 2], A[1, 2]
+    c00, c01, c02 = d1 * d2 - e * e, c * e - a * d2, a * e - c * d1
+    c11, c12, c22 = d0 * d2 - c * c, a * c - d0 * e, d0 * d1 - a * a
+    determinant = d0 * c00 + a * c01 + c * c02
+    if determinant == 0.0:
+        out[:] = np.nan
+        return
+    out[0] = (c00 * b[0] + c01 * b[1] + c02 * b[2]) / determinant
+    out[1] = (c01 * b[0] + c11 * b[1] + c12 * b[2]) / determinant
+    out[2] = (c02 * b[0] + c12 * b[1] + c22 * b[2]) / determinant
+
+
+@compiled
+def _move(xyz: Any, offsets: Any, image: Any, xy: Any, R: Any, t: Any, lens: Any, loss: float) -> None:
+    jacobian, normal, side, step = np.empty((2, 3)), np.empty((3, 3)), np.empty(3), np.empty(3)
+    for n in range(len(xyz)):
+        begin, end = offsets[n], offsets[n + 1]
+        place, damping = xyz[n].copy(), 1e-4
+        cost = _cost(place, begin, end, image, xy, R, t, lens, loss)
+        for _ in range(MAX_STEPS):
+            normal[:], side[:] = 0.0, 0.0
+            for k in range(begin, end):
+                u, v = _project(place, R[image[k]], t[image[k]], lens, jacobian)
+                du, dv = u - xy[k, 0], v - xy[k, 1]
+                weight = 1.0 / (1.0 + (du * du + dv * dv) / (loss * loss))
+                for i in range(3):
+                    side[i] -= weight * (jacobian[0, i] * du + jacobian[1, i] * dv)
+                    for j in range(3):
+                        normal[i, j] += weight * (jacobian[0, i] * jacobian[0, j] + jacobian[1, i] * jacobian[1, j])
+            last = cost
+            while damping < MAX_DAMPING:
+                _step(normal, side, damping, step)
+                moved = place + step
+                found = _cost(moved, begin, end, image, xy, R, t, lens, loss)
+                if found < cost:
+                    place, cost, damping = moved, found, 0.1 * damping
+                    break
+                damping *= 10.0
+            if not last - cost > CONVERGED * last:
+                break
+        xyz[n] = place
+
+
+@compiled
+def _errors(xyz: Any, offsets: Any, image: Any, xy: Any, R: Any, t: Any, lens: Any) -> Any:
+    jacobian, errors = np.empty((2, 3)), np.empty(len(xyz))
+    for n in range(len(xyz)):
+        total = 0.0
+        for k in range(offsets[n], offsets[n + 1]):
+            u, v = _project(xyz[n], R[image[k]], t[image[k]], lens, jacobian)
+            total += np.sqrt((u - xy[k, 0]) ** 2 + (v - xy[k, 1]) ** 2)
+        errors[n] = total / max(1, offsets[n + 1] - offsets[n])
+    return errors

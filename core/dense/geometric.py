@@ -77,13 +77,13 @@ class GeometricFilter:
         planes[..., 3] = np.float32(np.inf)
         pairs = matcher.score(planes)
         poses, pinhole = self._scene.poses, self._scene.pinhole
-        for name in view.sources:
-            if name in self._maps:
-                matcher.offer(
-                    planes,
-                    pairs,
-                    planes_from_source(self._planes(name), pinhole, poses[view.name], poses[name], matcher.limits),
-                )
+        others = [
+            planes_from_source(self._planes(name), pinhole, poses[view.name], poses[name], matcher.limits)
+            for name in view.sources
+            if name in self._maps
+        ]
+        if others:
+            matcher.offer(planes, pairs, np.stack(others))
         for number in range(passes):
             matcher.sweep(planes, pairs, 100 + number, STEP * 0.5**number, DRAWS)
             check((number + 1) / (passes + 1))

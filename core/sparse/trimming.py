@@ -155,7 +155,7 @@ def admitted(noise: F64, seen: Observations, limit_px: float) -> I64:
 
 
 def _noise(errors: F64, seen: Observations) -> F64:
-    """(n,) mean error in px, of which the fit of the point itself has taken a share: the larger, the shorter its track."""
+    """(n,) mean error in px, of which the fit of the point itself has taken a share: more of a shorter track."""
     observed = 2.0 * seen.lengths
     with np.errstate(divide="ignore", invalid="ignore"):
         noise: F64 = errors * np.sqrt(observed / (observed - 3.0))

@@ -16,7 +16,7 @@ from core.dense.cameras import Pinhole, Pose
 from core.dense.patchmatch.kernels import RADIUS, Patch, Sources, pack, scratch
 from core.dense.patchmatch.planes import upsample
 from core.dense.patchmatch.smooth import fit_rows
-from core.dense.patchmatch.sweep import score_rows, sweep_rows
+from core.dense.patchmatch.sweep import offer_rows, score_rows, sweep_rows
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -156,16 +156,20 @@ class Matcher:
             self._over_rows(partial(work, colour, np.uint64(_mix(self.key, 2 * number + colour))))
 
     def offer(self, planes: F32, pairs: NDArray[np.uint8], others: F32, margin: float = 0.0) -> None:
-        """Take each of the (h, w, 4) `others` that costs less than the pixel's plane plus `margin`; in place."""
-        others[..., 3] = np.float32(np.inf)
-        other_pairs = self.score(others)
-        better = self.mask & (others[..., 3] < planes[..., 3] + np.float32(margin))
-        planes[better] = others[better]
-        pairs[better] = other_pairs[better]
+        """Take each of the (n, h, w, 4) `others` that costs less than the pixel's plane plus `margin`; in place."""
+        weight, more = _colour_weight(), np.float32(margin)
+
+        def work(y0: int, y1: int) -> None:
+            offer_rows(
+                planes, pairs, others, more, self.grey, self.guide, self.mask, self.sources, self._scratch(), weight,
+                y0, y1,
+            )  # fmt: skip
+
+        self._over_rows(work)
 
     def smooth(self, planes: F32, pairs: NDArray[np.uint8]) -> None:
         """Take the local plane fit of every pixel where it matches about as well; in place."""
-        self.offer(planes, pairs, fit_planes(planes, self.mask, self.threads), SMOOTH_MARGIN)
+        self.offer(planes, pairs, fit_planes(planes, self.mask, self.threads)[np.newaxis], SMOOTH_MARGIN)
 
     def _scratch(self) -> Patch:
         return scratch(len(self.sources.A), min(self.best_views, len(self.sources.A)))

@@ -45,6 +45,36 @@ def score_rows(planes, pairs, grey, guide, mask, sources, patch, colour_weight, 
             pairs[v, u, 0], pairs[v, u, 1] = _best_two(patch, S)
 
 
+@kernel
+def offer_rows(  # type: ignore[no-untyped-def]
+    planes, pairs, others, margin, grey, guide, mask, sources, patch, colour_weight, y0, y1
+):
+    """Take the (n, h, w, 4) `others` of rows [y0, y1) that cost less than the pixel's plane plus `margin`; in place.
+
+    Others without a plane are passed over; `planes`, `pairs` and the rest are as in `sweep_rows`.
+    """
+    H, W = grey.shape
+    for v in range(max(y0, RADIUS), min(y1, H - RADIUS)):
+        for u in range(RADIUS, W - RADIUS):
+            if not mask[v, u]:
+                continue
+            first, second, known = np.int64(pairs[v, u, 0]), np.int64(pairs[v, u, 1]), False
+            mean, variance = f32(0), f32(0)
+            for n in range(others.shape[0]):
+                w, gu, gv = others[n, v, u, 0], others[n, v, u, 1], others[n, v, u, 2]
+                if w <= f32(0):
+                    continue
+                if not known:
+                    mean, variance = reference_patch(grey, guide, u, v, sources.A, colour_weight, patch)
+                    known = True
+                c0 = planes[v, u, 3]
+                c = plane_cost(w, gu, gv, f32(u), f32(v), sources, W, H, patch, mean, variance, first, second, f32(1e9))
+                if c < c0 + margin:
+                    planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], planes[v, u, 3] = w, gu, gv, c
+                    first, second = _best_two(patch, sources.A.shape[0])
+            pairs[v, u, 0], pairs[v, u, 1] = first, second
+
+
 @inlined
 def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
     """The two best sources of the plane scored last; two different ones wherever there are two."""

@@ -18,6 +18,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--thesis", action="store_true", help="by the preset thesis, with auto matching and 4 sources")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="option of the runs")
     parser.add_argument("--keep", action="store_true", help="keep the result folders")
+    parser.add_argument(
+        "--reuse", action="store_true", help="go on in kept result folders; no time is told where one was there"
+    )
     parser.add_argument("--fit", action="store_true", help="fit the confidence on the kept runs of the family")
     parser.add_argument("--make", action="store_true", help="only render")
 
@@ -52,8 +55,8 @@ def command(arguments: argparse.Namespace) -> None:
     column = THESIS if arguments.thesis else DEFAULT
     if options:
         column = Column(f"{column.name}-set", column.preset, {**column.options, **options})
-    bench, found = Bench(arguments.out, arguments.keep), []
+    bench, found = Bench(arguments.out, arguments.keep, arguments.reuse), []
     for scene in scenes:
         found.append(bench.score(scene, column))
-        print(f"{scene.name}: {found[-1]['verdict']}, {found[-1]['seconds']:.0f} s", file=sys.stderr, flush=True)
+        print(f"{scene.name}: {found[-1]['verdict']}, {found[-1]['seconds'] or 0:.0f} s", file=sys.stderr, flush=True)
     print(markdown(scenes, found))

@@ -46,6 +46,8 @@ class Bench:
     folder: Path
     keep: bool = False
     """Keep the result folders, to look at or to fit on."""
+    reuse: bool = False
+    """Go on in a kept result folder: what a change of the program does not touch is not computed again."""
 
     def score(self, scene: Scene, column: Column) -> dict[str, Any]:
         """The score of a scene, from before when nothing that it depends on has changed."""
@@ -67,7 +69,9 @@ class Bench:
 
     def _run(self, scene: Scene, column: Column, source: Path) -> dict[str, Any]:
         out = self.folder / "runs" / column.name / scene.name
-        shutil.rmtree(out, ignore_errors=True)
+        if not self.reuse:
+            shutil.rmtree(out, ignore_errors=True)
+        whole = not out.exists()
         command = [sys.executable, "-m", "cli.main", "run", str(source / "video.mp4"), str(source / "annotations.json")]
         command += ["--out", str(out), "--preset", column.preset, "--roi", ",".join(f"{v:g}" for v in scene.roi)]
         for name, value in column.options.items():
@@ -79,7 +83,7 @@ class Bench:
         if not quality:
             raise StageFailed(f"the run of scene {scene.name} left no quality.json: {said[-500:]}", where=scene.name)
         found = {
-            "seconds": round(seconds, 1),
+            "seconds": round(seconds, 1) if whole else None,
             "exit": code,
             "verdict": quality.get("verdict"),
             "flags": sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != "info"}),

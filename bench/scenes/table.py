@@ -53,7 +53,7 @@ def _row(scene: Scene, one: Found) -> list[str]:
         _percent(place["false_boxes"]["mapped_confident_persistent_share"]),
         _number(confidence["ece"]),
         _number(confidence["auroc"]),
-        f"{one['seconds']:.0f}",
+        "-" if one["seconds"] is None else f"{one['seconds']:.0f}",
     ]
 
 
@@ -86,7 +86,7 @@ def _median(scenes: Sequence[Scene], found: Sequence[Found]) -> list[str]:
         "",
         "",
         "",
-        f"{sum(one['seconds'] for one in found) / 60:.0f} min",
+        f"{sum(one['seconds'] or 0 for one in found) / 60:.0f} min",
     ]
 
 

@@ -211,6 +211,9 @@ class ModelSettings(Group):
     trim_tracks: bool = option(
         True, "cameras and lens follow from the tracks that agree best, not from all", source="decision 13; thesis off"
     )
+    radial_terms: Literal["auto", "always"] = option(
+        "auto", "auto: none where the tracks that agree best ask for none", source="decision 13"
+    )
     loss_scale_px: float = option(
         0.0,
         "last adjustment: residuals above this count less (Cauchy); 0 counts squares",

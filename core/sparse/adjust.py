@@ -19,6 +19,14 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.sparse.keypoint_alignment import Aligned
+from core.sparse.lens_trial import (
+    TRIAL_POINTS,
+    PrincipalPoint,
+    RadialTerms,
+    judge_principal_point,
+    judge_radial_terms,
+    try_lens,
+)
 from core.sparse.mapper import model_stats
 from core.sparse.points import move_points, observe
 from core.sparse.trimming import (
@@ -29,7 +37,6 @@ from core.sparse.trimming import (
     set_lens,
     solve,
     trim,
-    whole,
 )
 
 F64 = NDArray[np.float64]
@@ -49,17 +56,6 @@ ROBUST_ITERATIONS = 25
 HOPELESS_PX = 50.0
 """Observations farther off than this are dropped before the first adjustment."""
 
-MAX_SIGMA_DEG = 0.4
-"""The principal point is well determined when both its posterior sigmas, as angles, are below this."""
-MIN_SHIFT_SIGMAS = 3.0
-"""A shift within this many sigmas says nothing against the start, which then stays."""
-MAX_SHIFT_SHARE = 0.1
-"""A principal point farther from its start than this share of the longer image side is not believed."""
-MIN_IMAGES = 10
-TRIAL_POINTS = 400
-"""Points per image of the trial with a free principal point. All of them need gigabytes for their covariance and
-say little more: their sigmas come out larger than they are, so the trial is the stricter for it."""
-
 PRINCIPAL_POINT = slice(2, 4)
 """Place of cx, cy in the parameters of OPENCV_FISHEYE."""
 
@@ -69,20 +65,6 @@ ALIGNMENTS = 2
 Progress = Callable[[float, str], None]
 Align = Callable[[Any, bool], Aligned]
 """Aligns the keypoints of a model in place; whether observations that do not align are dropped."""
-
-
-@dataclass(frozen=True)
-class PrincipalPoint:
-    """What freeing the principal point gave, and whether it was kept."""
-
-    refined: bool
-    reason: str
-    """``kept``, or why not: ``off``, ``few_images``, ``no_covariance``, ``uncertain``, ``insignificant``,
-    ``implausible``, ``no_gain``."""
-    sigma_px: tuple[float, float] | None = None
-    """Posterior standard deviations of cx and cy, scaled by the residuals and by the correlation within tracks."""
-    shift_px: tuple[float, float] | None = None
-    """From the start to the free estimate."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +79,7 @@ class Adjustment:
     error_before_px: float
     error_after_px: float
     principal_point: PrincipalPoint
+    radial_terms: RadialTerms
     trimming: Trimming | None
     """None when all tracks have a say."""
     aligned: Aligned | None
@@ -111,6 +94,7 @@ def adjust(
     refine_principal_point: bool,
     align: Align | None = None,
     trim_tracks: bool = False,
+    judge_radial: bool = False,
     loss_scale_px: float = 1.0,
     threads: int = 1,
     progress: Progress = lambda share, message: None,
@@ -124,6 +108,7 @@ def adjust(
         refine_principal_point: free it when it is well determined.
         align: moves keypoints before cameras follow from them; None leaves them.
         trim_tracks: take cameras and lens from the tracks that agree best.
+        judge_radial: do without radial terms that these tracks do not ask for.
         loss_scale_px: residuals above this count less; 0 counts them all by their squares.
         threads: of Ceres; more than one is nearly but not exactly repeatable.
         progress: called with the share done.
@@ -134,33 +119,38 @@ def adjust(
     if loss_scale_px > 0:
         # Squares first: they converge in a fifth of the time and leave little to do.
         schedule.append(adjustment_options(False, loss_scale_px, threads))
-    free = adjustment_options(True, loss_scale_px, threads)
     # Keypoints that move next need no model that fits them where they are.
     most = MAX_ROUNDS if align is None else len(schedule)
     rounds, stable = _refine(work, cache, options, schedule, most, lambda r: progress(0.5 * r, "bundle adjustment"))
     progress(0.5, "keypoints and tracks")
     trimming, aligned = _settle(work, schedule[-1], align, trim_tracks, threads)
-    found = PrincipalPoint(False, "off")
-    if refine_principal_point:
-        progress(0.7, "principal point")
+    point, radial = PrincipalPoint(False, "off"), RadialTerms(True, "off")
+    judge_radial = judge_radial and trimming is not None
+    if refine_principal_point or judge_radial:
+        progress(0.7, "lens")
         said = pycolmap.Reconstruction(work)
         if trimming is not None:
             keep_agreeing(said, TRIAL_POINTS)
-        found = free_principal_point(said, free)
-        if found.refined and trimming is not None:
-            more = trim(work, lambda scale: adjustment_options(True, scale, threads), TERMS[-1:])
-            trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
-        elif found.refined:
-            further, stable = _refine(
-                work, cache, options, [free], MAX_ROUNDS, lambda r: progress(0.7 + 0.3 * r, "adjustment")
-            )
-            rounds += further
+        trial = try_lens(said, adjustment_options(refine_principal_point, loss_scale_px, threads))
+        point = judge_principal_point(trial) if refine_principal_point else point
+        radial = judge_radial_terms(trial) if judge_radial else radial
+    if trimming is not None and (point.refined or not radial.kept):
+        terms = TERMS[-1:] if radial.kept else (0,)
+        more = trim(work, lambda scale: adjustment_options(point.refined, scale, threads), terms)
+        before_px = trimming.focal_before_px if radial.kept else more.focal_before_px
+        trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=before_px)
+    elif point.refined:
+        free = adjustment_options(True, loss_scale_px, threads)
+        further, stable = _refine(
+            work, cache, options, [free], MAX_ROUNDS, lambda r: progress(0.7 + 0.3 * r, "adjustment")
+        )
+        rounds += further
     if trimming is not None:
         progress(0.9, "points")
         set_lens(work, 4)
         _retrack(work, cache, options, align)
     after = model_stats(work).mean_reprojection_error_px
-    return Adjustment(work, rounds, stable, before, after, found, trimming, aligned)
+    return Adjustment(work, rounds, stable, before, after, point, radial, trimming, aligned)
 
 
 def _settle(
@@ -180,51 +170,6 @@ def _settle(
         elif align is not None:
             solve(work, options)
     return trimming, aligned
-
-
-def free_principal_point(model: Any, options: Any) -> PrincipalPoint:
-    """Adjust a copy with the principal point free and judge it by its covariance; `model` is not changed.
-
-    `options` is from `adjustment_options`, with the principal point free.
-    """
-    if model.num_reg_images() < MIN_IMAGES:
-        return PrincipalPoint(False, "few_images")
-    trial = pycolmap.Reconstruction(model)
-    keep_covering_points(trial, TRIAL_POINTS)
-    before = model_stats(trial).median_reprojection_error_px
-    adjuster = pycolmap.create_default_ceres_bundle_adjuster(options, whole(trial), trial)
-    adjuster.solve()
-    camera = next(iter(trial.cameras.values()))
-    center = camera.principal_point_idxs()
-    start = np.array(next(iter(model.cameras.values())).params)[center]
-    shift = np.array(camera.params)[center] - start
-    covariance = pycolmap.estimate_ba_covariance(pycolmap.BACovarianceOptions(), trial, adjuster)
-    block = None if covariance is None else covariance.get_other_params_cov(camera.params)
-    if block is None or not np.isfinite(block).all():
-        return PrincipalPoint(False, "no_covariance", None, _pair(shift))
-    error = model_stats(trial).median_reprojection_error_px
-    # Ceres takes residuals in px as if their sigma were 1; the median length of a 2D normal is 1.1774 sigma.
-    sigma = np.sqrt(np.diag(block)[center].clip(min=0)) * error / 1.1774
-    # What is wrong with a keypoint is much the same in all images of its track: a track is one observation, not many.
-    # Taken as many, two rendered clips of narrow motion moved the point 15 px off, 18 of these sigmas.
-    sigma *= np.sqrt(max(1.0, model_stats(model).mean_track_length))
-    reason = "kept"
-    if (np.degrees(sigma / camera.mean_focal_length()) > MAX_SIGMA_DEG).any():
-        reason = "uncertain"
-    elif (np.abs(shift) < MIN_SHIFT_SIGMAS * sigma).all():
-        reason = "insignificant"
-    elif (np.abs(shift) > MAX_SHIFT_SHARE * max(camera.width, camera.height)).any():
-        reason = "implausible"
-    elif error >= before:
-        reason = "no_gain"
-    return PrincipalPoint(reason == "kept", reason, _pair(sigma), _pair(shift))
-
-
-def keep_covering_points(model: Any, per_image: int) -> None:
-    """Delete points in place, all but the longest tracks that give every image `per_image` of them (if it has them)."""
-    seen = observe(model)
-    order = np.argsort(-seen.lengths, kind="stable")
-    seen.keep(model, seen.first(order, np.full(len(order), per_image)))
 
 
 def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> Any:
@@ -284,7 +229,3 @@ def _retrack(model: Any, cache: Any, options: Any, align: Align | None) -> None:
     move_points(model, observe(model), POINT_LOSS_PX)
     mapper.filter_points(mapping)
     mapper.end_reconstruction(False)
-
-
-def _pair(values: F64) -> tuple[float, float]:
-    return float(values[0]), float(values[1])

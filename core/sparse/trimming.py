@@ -48,7 +48,7 @@ SETTLED = 0.001
 POINT_LOSS_PX = 1.0
 """Scale of the loss by which points follow their cameras."""
 
-LENSES = {1: "SIMPLE_RADIAL_FISHEYE", 2: "RADIAL_FISHEYE", 4: "OPENCV_FISHEYE"}
+LENSES = {0: "SIMPLE_FISHEYE", 1: "SIMPLE_RADIAL_FISHEYE", 2: "RADIAL_FISHEYE", 4: "OPENCV_FISHEYE"}
 
 Options = Callable[[float], Any]
 """`BundleAdjustmentOptions` for a scale of Cauchy's loss in px; which parameters are free is the caller's."""
@@ -110,7 +110,7 @@ def trim(model: Any, options: Options, terms: Sequence[int] = TERMS) -> Trimming
 
 
 def set_lens(model: Any, terms: int) -> None:
-    """Give the one camera of a model so many radial terms in place: 1, 2, or the 4 of OPENCV_FISHEYE."""
+    """Give the one camera of a model so many radial terms in place: 0 to 2, or the 4 of OPENCV_FISHEYE."""
     camera = next(iter(model.cameras.values()))
     params = np.array(camera.params)
     center, focal = params[camera.principal_point_idxs()], params[camera.focal_length_idxs()]

@@ -86,6 +86,7 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
         align=_aligner(task) if task.settings.model.align_keypoints else None,
         trim_tracks=task.settings.model.trim_tracks,
+        judge_radial=task.settings.model.radial_terms == "auto",
         loss_scale_px=task.settings.model.loss_scale_px,
         threads=task.settings.compute.threads or 1,  # 0 asks for a result that repeats to the last bit
         progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
@@ -126,7 +127,7 @@ def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames
 
 
 def _adjustment_facts(adjustment: Adjustment) -> Facts:
-    point, trimming = adjustment.principal_point, adjustment.trimming
+    point, radial, trimming = adjustment.principal_point, adjustment.radial_terms, adjustment.trimming
     return {
         "rounds": adjustment.rounds,
         "stable": adjustment.stable,
@@ -137,6 +138,7 @@ def _adjustment_facts(adjustment: Adjustment) -> Facts:
             "sigma_px": None if point.sigma_px is None else list(point.sigma_px),
             "shift_px": None if point.shift_px is None else list(point.shift_px),
         },
+        "radial_terms": {"decision": radial.reason, "deviation": radial.deviation},
         "alignment": None if adjustment.aligned is None else asdict(adjustment.aligned),
         "trimming": None if trimming is None else {**asdict(trimming), "shift": trimming.shift},
     }

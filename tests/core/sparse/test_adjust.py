@@ -7,8 +7,9 @@ import pycolmap
 import pytest
 
 from core.settings.groups import MapperSettings
-from core.sparse.adjust import MIN_IMAGES, adjust, adjustment_options, free_principal_point
+from core.sparse.adjust import adjust, adjustment_options
 from core.sparse.cases import Case, run_case
+from core.sparse.lens_trial import MIN_IMAGES, judge_principal_point, try_lens
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
 
@@ -95,7 +96,7 @@ def test_a_right_principal_point_stays_exactly(model, cache):
 
 def test_few_images_do_not_determine_a_principal_point(graph):
     few = run_case(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0)).model
-    assert free_principal_point(few, adjustment_options(True, 1.0, 1)).reason == "few_images"
+    assert judge_principal_point(try_lens(few, adjustment_options(True, 1.0, 1))).reason == "few_images"
 
 
 def test_mismatches_move_cameras_less_when_they_count_less(model, cache, scene):
@@ -113,5 +114,5 @@ def test_mismatches_move_cameras_less_when_they_count_less(model, cache, scene):
 
 def test_a_narrow_motion_does_not_determine_a_principal_point(graph):
     narrow = run_case(Case(graph, 0, 14, SETTINGS, 0)).model
-    found = free_principal_point(narrow, adjustment_options(True, 0.0, 1))
+    found = judge_principal_point(try_lens(narrow, adjustment_options(True, 0.0, 1)))
     assert (found.refined, found.reason) == (False, "uncertain")

@@ -1,0 +1,148 @@
+"""What the tracks say of the lens: whether its principal point is off the start, whether it has radial terms.
+
+One trial adjusts a copy of the model with these free and takes their covariance. A parameter that the tracks ask for
+by no more than their scatter stays where it started, an equidistant lens that looks at the middle of the source frame:
+as a free one it would take part of its error from the focal length, and with it from every depth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pycolmap
+from numpy.typing import NDArray
+
+from core.sparse.mapper import model_stats
+from core.sparse.points import observe
+from core.sparse.trimming import whole
+
+F64 = NDArray[np.float64]
+
+MAX_SIGMA_DEG = 0.4
+"""The principal point is well determined when both its posterior sigmas, as angles, are below this."""
+MIN_SHIFT_SIGMAS = 3.0
+"""A shift within this many sigmas says nothing against the start, which then stays. Radial terms are measured by the
+root of their mean square in sigmas, correlation included: rendered equidistant lenses had 0.7 to 2.1, one with
+k1 = -0.06 had 10."""
+MAX_SHIFT_SHARE = 0.1
+"""A principal point farther from its start than this share of the longer image side is not believed."""
+MIN_IMAGES = 10
+TRIAL_POINTS = 400
+"""Points per image of the trial. All of them need gigabytes for their covariance and say little more: their sigmas
+come out larger than they are, so the trial is the stricter for it."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """The free parameters of a camera before and after, with what is known of them."""
+
+    reason: str
+    """Why there is no covariance: ``few_images``, ``no_covariance``; empty when there is one."""
+    camera: Any = None
+    """`pycolmap.Camera` of the trial."""
+    start: F64 | None = None
+    """Its parameters before."""
+    covariance: F64 | None = None
+    """(p, p) of all its parameters, 0 for those that were not free; scaled by the residuals and by the correlation
+    within tracks."""
+    gained: bool = False
+    """Whether the median error fell."""
+
+
+@dataclass(frozen=True)
+class PrincipalPoint:
+    """What freeing the principal point gave, and whether it was kept."""
+
+    refined: bool
+    reason: str
+    """``kept``, or why not: ``off``, ``few_images``, ``no_covariance``, ``uncertain``, ``insignificant``,
+    ``implausible``, ``no_gain``."""
+    sigma_px: tuple[float, float] | None = None
+    """Posterior standard deviations of cx and cy, scaled by the residuals and by the correlation within tracks."""
+    shift_px: tuple[float, float] | None = None
+    """From the start to the free estimate."""
+
+
+@dataclass(frozen=True)
+class RadialTerms:
+    """Whether the lens has radial terms."""
+
+    kept: bool
+    reason: str
+    """``significant``, ``insignificant``, or why nobody knows: ``off``, ``few_images``, ``no_covariance``."""
+    deviation: float | None = None
+    """Root of their mean square, in sigmas."""
+
+
+def try_lens(model: Any, options: Any) -> Trial:
+    """Adjust a copy of a model with one camera; `options` is from `adjustment_options` and says what is free."""
+    if model.num_reg_images() < MIN_IMAGES:
+        return Trial("few_images")
+    trial = pycolmap.Reconstruction(model)
+    keep_covering_points(trial, TRIAL_POINTS)
+    before = model_stats(trial).median_reprojection_error_px
+    adjuster = pycolmap.create_default_ceres_bundle_adjuster(options, whole(trial), trial)
+    adjuster.solve()
+    camera = next(iter(trial.cameras.values()))
+    start = np.array(next(iter(model.cameras.values())).params)
+    covariance = pycolmap.estimate_ba_covariance(pycolmap.BACovarianceOptions(), trial, adjuster)
+    block = None if covariance is None else covariance.get_other_params_cov(camera.params)
+    if block is None or not np.isfinite(block).all():
+        return Trial("no_covariance", camera, start)
+    stats = model_stats(trial)
+    # Ceres takes residuals in px as if their sigma were 1; the median length of a 2D normal is 1.1774 sigma.
+    variance = (stats.median_reprojection_error_px / 1.1774) ** 2
+    # What is wrong with a keypoint is much the same in all images of its track: a track is one observation, not many.
+    # Taken as many, two rendered clips of narrow motion moved the point 15 px off, 18 of these sigmas.
+    variance *= max(1.0, model_stats(model).mean_track_length)
+    free = np.ones(len(start), bool)
+    free[camera.principal_point_idxs()] = options.refine_principal_point
+    whole_block = np.zeros((len(start), len(start)))
+    whole_block[np.ix_(free, free)] = np.asarray(block) * variance
+    return Trial("", camera, start, whole_block, stats.median_reprojection_error_px < before)
+
+
+def judge_principal_point(trial: Trial) -> PrincipalPoint:
+    """Whether the principal point of a trial is well determined and off its start."""
+    if trial.camera is None or trial.start is None:
+        return PrincipalPoint(False, trial.reason)
+    camera, center = trial.camera, trial.camera.principal_point_idxs()
+    shift = np.array(camera.params)[center] - trial.start[center]
+    if trial.covariance is None:
+        return PrincipalPoint(False, trial.reason, None, _pair(shift))
+    sigma = np.sqrt(np.diag(trial.covariance)[center].clip(min=0))
+    reason = "kept"
+    if (np.degrees(sigma / camera.mean_focal_length()) > MAX_SIGMA_DEG).any():
+        reason = "uncertain"
+    elif (np.abs(shift) < MIN_SHIFT_SIGMAS * sigma).all():
+        reason = "insignificant"
+    elif (np.abs(shift) > MAX_SHIFT_SHARE * max(camera.width, camera.height)).any():
+        reason = "implausible"
+    elif not trial.gained:
+        reason = "no_gain"
+    return PrincipalPoint(reason == "kept", reason, _pair(sigma), _pair(shift))
+
+
+def judge_radial_terms(trial: Trial) -> RadialTerms:
+    """Whether the radial terms of a trial, all of them together, differ from none."""
+    if trial.covariance is None:
+        return RadialTerms(True, trial.reason)
+    radial = trial.camera.extra_params_idxs()
+    terms = np.array(trial.camera.params)[radial]
+    square = terms @ np.linalg.pinv(trial.covariance[np.ix_(radial, radial)]) @ terms
+    deviation = float(np.sqrt(max(0.0, square) / len(terms)))
+    kept = deviation >= MIN_SHIFT_SIGMAS
+    return RadialTerms(kept, "significant" if kept else "insignificant", deviation)
+
+
+def keep_covering_points(model: Any, per_image: int) -> None:
+    """Delete points in place, all but the longest tracks that give every image `per_image` of them (if it has them)."""
+    seen = observe(model)
+    order = np.argsort(-seen.lengths, kind="stable")
+    seen.keep(model, seen.first(order, np.full(len(order), per_image)))
+
+
+def _pair(values: F64) -> tuple[float, float]:
+    return float(values[0]), float(values[1])

@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+import numpy as np
+import pycolmap
+import pytest
+
+from core.settings.groups import MapperSettings
+from core.sparse.adjust import adjust, adjustment_options
+from core.sparse.cases import Case, run_case
+from core.sparse.lens_trial import MIN_IMAGES, MIN_SHIFT_SIGMAS, judge_principal_point, judge_radial_terms, try_lens
+from core.sparse.mapper import mapper_options, open_cache
+from core.sparse.trimming import set_lens
+from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, make_scene, view_graph, write_graph
+
+SETTINGS = MapperSettings(search_tracks=0)
+NOISE_PX = 0.3
+
+
+@pytest.fixture(scope="module")
+def graph(tmp_path_factory):
+    scene = make_scene(24, noise_px=NOISE_PX)
+    return write_graph(tmp_path_factory.mktemp("trial") / "graph", scene, view_graph(scene))
+
+
+@pytest.fixture(scope="module")
+def mapped(graph):
+    """24 images of an equidistant lens; its camera has two radial terms, both 0."""
+    model = run_case(Case(graph, 0, 24, SETTINGS, 0)).model
+    set_lens(model, 2)
+    model.camera(1).params = np.array([FOCAL, WIDTH / 2, HEIGHT / 2, 0.0, 0.0])
+    return model
+
+
+def seen_through(model, k1):
+    """The model with the keypoints that a lens with k1 would give, in a camera that knows nothing of it."""
+    found = pycolmap.Reconstruction(model)
+    rng = np.random.default_rng(0)
+    found.camera(1).params = np.array([FOCAL, WIDTH / 2, HEIGHT / 2, k1, 0.0])
+    for image_id in found.reg_image_ids():
+        image = found.image(image_id)
+        for point in image.points2D:
+            if point.has_point3D():
+                point.xy = image.project_point(found.point3D(point.point3D_id).xyz) + rng.normal(0, NOISE_PX, 2)
+    found.camera(1).params = model.camera(1).params
+    return found
+
+
+def trial_of(model, **more):
+    return try_lens(model, adjustment_options(more.get("principal_point", True), 0.0, 1))
+
+
+def test_an_equidistant_lens_is_not_given_radial_terms(mapped):
+    found = judge_radial_terms(trial_of(seen_through(mapped, 0.0)))
+    assert (found.kept, found.reason) == (False, "insignificant")
+    assert 0.0 < found.deviation < MIN_SHIFT_SIGMAS
+
+
+@pytest.mark.parametrize("k1", [0.08, -0.06])
+def test_a_lens_with_radial_terms_keeps_them(mapped, k1):
+    trial = trial_of(seen_through(mapped, k1))
+    found = judge_radial_terms(trial)
+    assert (found.kept, found.reason) == (True, "significant")
+    assert found.deviation > MIN_SHIFT_SIGMAS
+    assert trial.camera.params[3] == pytest.approx(k1, abs=0.02)
+
+
+def test_a_trial_that_holds_the_principal_point_knows_nothing_of_it(mapped):
+    trial = trial_of(seen_through(mapped, 0.08), principal_point=False)
+    assert judge_radial_terms(trial).kept
+    assert not trial.covariance[1:3].any()
+    assert trial.covariance[3, 3] > 0
+    assert trial.camera.params[1:3].tolist() == [WIDTH / 2, HEIGHT / 2]
+
+
+def test_a_trial_changes_nothing(mapped):
+    model = seen_through(mapped, 0.05)
+    before = model.camera(1).params.tolist()
+    trial = trial_of(model)
+    assert model.camera(1).params.tolist() == before == trial.start.tolist()
+
+
+def test_too_few_images_say_nothing(graph):
+    few = run_case(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0)).model
+    trial = trial_of(few)
+    assert judge_principal_point(trial).reason == "few_images"
+    radial = judge_radial_terms(trial)
+    assert (radial.kept, radial.reason, radial.deviation) == (True, "few_images", None)
+
+
+def test_the_adjustment_does_without_terms_that_nothing_asks_for(graph):
+    start = run_case(Case(graph, 0, 24, SETTINGS, 0)).model
+    cache = open_cache(graph / "database.db")
+    options = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
+    for judged in (True, False):
+        done = adjust(start, cache, options, refine_principal_point=False, trim_tracks=True, judge_radial=judged)
+        assert done.radial_terms.reason == ("insignificant" if judged else "off")
+        assert (done.model.camera(1).params[4:] == 0.0).all() == judged
+        assert done.model.camera(1).model.name == "OPENCV_FISHEYE"
+        assert done.model.camera(1).mean_focal_length() == pytest.approx(FOCAL, rel=0.005)
+    # Without a choice of tracks there is nothing to judge by.
+    whole = adjust(start, cache, options, refine_principal_point=False, judge_radial=True)
+    assert whole.radial_terms.reason == "off"

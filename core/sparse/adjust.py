@@ -149,6 +149,12 @@ def adjust(
         progress(0.9, "points")
         set_lens(work, 4)
         _retrack(work, cache, options, align)
+        if radial.kept:
+            # Radial terms trade against the focal length: the completed tracks say more of both.
+            more = trim(work, lambda scale: adjustment_options(False, scale, threads), TERMS[-1:])
+            trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
+            set_lens(work, 4)
+        _filter(work, cache, options)
     after = model_stats(work).mean_reprojection_error_px
     return Adjustment(work, rounds, stable, before, after, point, radial, trimming, aligned)
 
@@ -217,7 +223,7 @@ def _refine(
 
 
 def _retrack(model: Any, cache: Any, options: Any, align: Align | None) -> None:
-    """Complete and filter the tracks in place, with cameras that stay as they are."""
+    """Complete the tracks in place and move their points, with cameras that stay as they are."""
     triangulation, mapping = options.get_triangulation(), options.get_mapper()
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(model)
@@ -227,5 +233,12 @@ def _retrack(model: Any, cache: Any, options: Any, align: Align | None) -> None:
     if align is not None:
         align(model, False)
     move_points(model, observe(model), POINT_LOSS_PX)
-    mapper.filter_points(mapping)
+    mapper.end_reconstruction(False)
+
+
+def _filter(model: Any, cache: Any, options: Any) -> None:
+    """Drop the observations and points that do not fit, in place."""
+    mapper = pycolmap.IncrementalMapper(cache)
+    mapper.begin_reconstruction(model)
+    mapper.filter_points(options.get_mapper())
     mapper.end_reconstruction(False)

@@ -58,5 +58,6 @@ def command(arguments: argparse.Namespace) -> None:
     bench, found = Bench(arguments.out, arguments.keep, arguments.reuse), []
     for scene in scenes:
         found.append(bench.score(scene, column))
-        print(f"{scene.name}: {found[-1]['verdict']}, {found[-1]['seconds'] or 0:.0f} s", file=sys.stderr, flush=True)
+        taken = "gone on with" if found[-1]["seconds"] is None else f"{found[-1]['seconds']:.0f} s"
+        print(f"{scene.name}: {found[-1]['verdict']}, {taken}", file=sys.stderr, flush=True)
     print(markdown(scenes, found))

@@ -64,7 +64,7 @@ class Trimming:
     median_error_px: float
     """Of the better part of the tracks before the last round, and the scale of its loss."""
     focal_before_px: float
-    """Before the last time that tracks were chosen."""
+    """Before the last turn in which tracks were chosen."""
     focal_after_px: float
 
     @property

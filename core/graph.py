@@ -93,7 +93,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=25),
         _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
         _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
-        _spec("reduce_refine", "model.veto", version=2, weight=0.1),
+        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=3, weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=3, weight=6),
         _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=10, weight=18),
         _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
@@ -193,7 +193,7 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     tasks = [_case(window, ("graph", "reduce_coarse")) for window in refined]
     coarse_key = f"coarse/{best['best']}"
     refine_keys = tuple(_case_key(window) for window in refined)
-    tasks.append(TaskSpec("reduce_refine", ("reduce_coarse", coarse_key, *refine_keys)))
+    tasks.append(TaskSpec("reduce_refine", ("annotations", "frames", "reduce_coarse", coarse_key, *refine_keys)))
     tasks.append(TaskSpec("confirm", ("frames", "graph", "reduce_refine")))
     tasks.append(TaskSpec("extend", ("frames", "graph", "confirm")))
     if settings.model.further:

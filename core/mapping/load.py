@@ -16,9 +16,8 @@ from core.dense.cameras import Pinhole, Pose
 from core.dense.maps import map_paths, open_scene, read_map
 from core.mapping.consensus import looked_at
 from core.mapping.depth_witness import DepthMaps
-from core.mapping.rows import Detection
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal, oriented
-from core.mapping.support import Box, box_in_crop_px, open_model, read_sparse_model
+from core.mapping.support import Box, open_model, read_sparse_model
 from core.mapping.surface import Surface
 from core.mapping.surface_rules import Matches
 from core.mapping.views import Views, views_of
@@ -76,28 +75,6 @@ def open_mapping_scene(
         focal_px=mean_focal(views.camera),
         model=model,
     )
-
-
-def boxes_by_frame(
-    detections: Sequence[Detection], looked: Iterable[int], index_of_source: Mapping[int, int], crop: Crop
-) -> dict[int, list[tuple[Box, str]]]:
-    """Boxes (crop pixels) and labels by frame index, for all frames that the detector saw.
-
-    Args:
-        detections: of the annotation file.
-        looked: source frames with an entry in it, with detections or without.
-        index_of_source: row of frames.csv of each source frame that took part.
-        crop: of the exported frames.
-    """
-    found: dict[int, list[tuple[Box, str]]] = {}
-    for source in looked:
-        if source in index_of_source:
-            found.setdefault(index_of_source[source], [])
-    for detection in detections:
-        index = index_of_source.get(-1 if detection.source_index is None else detection.source_index)
-        if index is not None:
-            found.setdefault(index, []).append((box_in_crop_px(detection.box, crop, "source"), detection.label))
-    return dict(sorted(found.items()))
 
 
 def open_depth_maps(undistorted: Path, folders: Iterable[Path]) -> DepthMaps:

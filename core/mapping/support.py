@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -13,6 +13,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.errors import StageFailed
+from core.mapping.rows import Detection
 from core.roi import Crop
 
 F64 = NDArray[np.float64]
@@ -31,6 +32,28 @@ def box_in_crop_px(box: Box, crop: Crop, box_frame: Literal["source", "crop"]) -
         return (x1 * crop.width, y1 * crop.height, x2 * crop.width, y2 * crop.height)
     width, height = crop.source_width, crop.source_height
     return (x1 * width - crop.x0, y1 * height - crop.y0, x2 * width - crop.x0, y2 * height - crop.y0)
+
+
+def boxes_by_frame(
+    detections: Sequence[Detection], looked: Iterable[int], index_of_source: Mapping[int, int], crop: Crop
+) -> dict[int, list[tuple[Box, str]]]:
+    """Boxes (crop pixels) and labels by frame index, for all frames that the detector saw.
+
+    Args:
+        detections: of the annotation file.
+        looked: source frames with an entry in it, with detections or without.
+        index_of_source: row of frames.csv of each source frame that took part.
+        crop: of the exported frames.
+    """
+    found: dict[int, list[tuple[Box, str]]] = {}
+    for source in looked:
+        if source in index_of_source:
+            found.setdefault(index_of_source[source], [])
+    for detection in detections:
+        index = index_of_source.get(-1 if detection.source_index is None else detection.source_index)
+        if index is not None:
+            found.setdefault(index, []).append((box_in_crop_px(detection.box, crop, "source"), detection.label))
+    return dict(sorted(found.items()))
 
 
 def overlaps_crop(box_px: Box, crop: Crop) -> bool:
@@ -81,7 +104,7 @@ def read_sparse_model(folder: Path, frame_indices: Iterable[int] | None = None) 
     observations: dict[int, Observations] = {}
     for image_id in sorted(model.reg_image_ids()):
         if wanted is None or image_id - 1 in wanted:
-            observations[image_id - 1] = _observations(model.image(image_id))
+            observations[image_id - 1] = observations_of(model.image(image_id))
     needed = {int(i) for seen in observations.values() for i in seen.point_ids}
     positions = {i: np.array(model.point3D(i).xyz, dtype=np.float64) for i in sorted(needed)}
     return SparseModel(observations, positions)
@@ -95,7 +118,8 @@ def open_model(folder: Path) -> Any:
         raise StageFailed(f"no sparse model in {folder.name}: {error}", where=folder.name) from None
 
 
-def _observations(image: Any) -> Observations:
+def observations_of(image: Any) -> Observations:
+    """Keypoints with a 3D point of a registered image (`pycolmap.Image`)."""
     points = image.get_observation_points2D()
     xy = np.array([point.xy for point in points], dtype=np.float64).reshape(-1, 2)
     ids = np.array([point.point3D_id for point in points], dtype=np.int64)

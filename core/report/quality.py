@@ -170,24 +170,40 @@ def _surface(record: RunRecord) -> dict[str, Any]:
 
 
 def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
-    """The cases that were not selected, best first, each with why it lost."""
+    """The cases that were not selected, best first, each with why it lost.
+
+    `verified_detections` is null for coarse cases, which lost before detections were asked for.
+    """
+    ranked = record.facts("reduce_refine").get("ranking", ())
+    verified = {row["name"]: row.get("verified_detections") for row in ranked}
+    winner = next((row["name"] for row in cases if row["selected"]), None)
     checks = {task.key.split("/", 1)[1]: task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
     order = sorted(
         (row for row in cases if not row["selected"]),
         key=lambda row: (
             bool(row["vetoed"]),
+            -(verified.get(row["name"]) or 0),
             -int(row["registered_images"] or 0),
             -int(row["points3D"] or 0),
             row["name"],
         ),
     )
     names = ("name", "status", "registered_images", "points3D")
-    return [{**{name: row[name] for name in names}, "why": _why_lost(row, checks[row["name"]])} for row in order]
+    return [
+        {
+            **{name: row[name] for name in names},
+            "verified_detections": verified.get(row["name"]),
+            "why": _why_lost(row, checks[row["name"]], verified.get(row["name"]), verified.get(winner)),
+        }
+        for row in order
+    ]
 
 
-def _why_lost(row: Row, checks: Sequence[Row]) -> str:
+def _why_lost(row: Row, checks: Sequence[Row], verified: int | None, of_winner: int | None) -> str:
     if row["status"] != "succeeded":
         return str(row["reason"] or row["status"])
     if row["vetoed"]:
         return "vetoed: " + ", ".join(sorted({check["code"] for check in checks if check["severity"] == "error"}))
+    if verified is not None and of_winner is not None and verified < of_winner:
+        return f"verified detections: {verified} against {of_winner}"
     return "score"

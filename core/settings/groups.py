@@ -188,6 +188,11 @@ class ModelSettings(Group):
     veto: bool = option(
         True, "a model that a check calls wrong cannot win; all such = no reconstruction", source="checks; thesis off"
     )
+    prefer_verified: bool = option(
+        True,
+        "of trusted cases the one that verifies more detections wins, then the larger",
+        source="method; thesis off",
+    )
     further: int = option(
         2,
         "further models of frames that cannot be joined to the first, at most",

@@ -64,6 +64,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "mapper.refine_distortion": True,
         "mapper.search_tracks": 0,
         "model.veto": False,
+        "model.prefer_verified": False,
         "model.drop_loose": False,
         "model.further": 0,
         "model.confirm": False,

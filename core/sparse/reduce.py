@@ -1,7 +1,7 @@
 """The reducer's rule: which case wins, and why there may be none.
 
-Trust comes first: a case that a check vetoed loses against any that none did. Then the thesis's score (3.3.3)
-decides. Verified detections would stand between the two; they are known only after mapping, behind the search.
+Trust comes first: a case that a check vetoed loses against any that none did. Then the detections that its points
+verify count (`core.mapping.verified`; the final choice only), then the thesis's score (3.3.3).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from core.errors import NoReconstruction, StageFailed
 Row = Mapping[str, Any]
 
 WINNER_FIELDS = ("start", "end", "kind", "registered_images", "points3D")
+RANKING_FIELDS = ("name", "verified_detections", "registered_images", "points3D")
 
 
 def score(row: Row) -> tuple[int, int]:
@@ -22,12 +23,12 @@ def score(row: Row) -> tuple[int, int]:
     return int(row["registered_images"]), int(row["points3D"])
 
 
-Standing = tuple[bool, tuple[int, int]]
+Standing = tuple[bool, int, tuple[int, int]]
 
 
 def standing(row: Row, veto: bool = True) -> Standing:
-    """What cases are ranked by: not vetoed before vetoed, then `score`. Without `veto` the score alone."""
-    return not (veto and row.get("vetoed", False)), score(row)
+    """What cases are ranked by: not vetoed before vetoed (unless `veto` is off), `verified_detections`, `score`."""
+    return not (veto and row.get("vetoed", False)), int(row.get("verified_detections", 0)), score(row)
 
 
 def rank(rows: Sequence[Row], veto: bool = True) -> list[Row]:
@@ -52,6 +53,7 @@ def reduce_cases(rows: Sequence[Row], veto: bool = True) -> dict[str, Any]:
 def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) -> dict[str, Any]:
     """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
 
+    Rows may have `verified_detections`, all of them or none.
     Raises `NoReconstruction` when the winner is vetoed, which with `veto` means that every candidate is.
     """
     ranking = rank(refined, veto)
@@ -83,10 +85,7 @@ def _facts(winner: Row, ranking: Sequence[Row]) -> dict[str, Any]:
     return {
         "best": winner["name"],
         **{field: winner[field] for field in WINNER_FIELDS},
-        "ranking": [
-            {"name": row["name"], "registered_images": row["registered_images"], "points3D": row["points3D"]}
-            for row in ranking
-        ],
+        "ranking": [{field: row[field] for field in RANKING_FIELDS if field in row} for row in ranking],
     }
 
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from core.mapping.coloring import coloring_radius, vertex_weights
 from core.mapping.depth_witness import no_depth_maps
-from core.mapping.load import boxes_by_frame, matches_of_graph, open_depth_maps, open_mapping_scene
+from core.mapping.load import matches_of_graph, open_depth_maps, open_mapping_scene
 from core.mapping.rows import Detection, outcome_counts
 from core.mapping.scene import Scene
 from core.mapping.store import write_observations
-from core.mapping.support import SparseModel, read_sparse_model
+from core.mapping.support import SparseModel, boxes_by_frame, read_sparse_model
 from core.mapping.surface_rules import Observation, Times, place_on_surface
 from core.mapping.thesis import FrameTimes, Placement, place_detections
 from core.report.tables import read_json, write_json

@@ -89,6 +89,22 @@ def test_weak_and_losing_cases() -> None:
     assert [row["name"] for row in QUALITY["search"]["losers"]][:2] == ["seg_006_0120_0300", "seg_014_0280_0450"]
 
 
+def test_a_case_that_verified_less_is_told_so() -> None:
+    record = full_record()
+    counts = {"refine_005_0090_0310": 6, "seg_006_0120_0300": 4, "seg_014_0280_0450": 6}
+    ranking = [{"name": name, "verified_detections": count} for name, count in counts.items()]
+    tasks = [
+        replace(task, facts={**task.facts, "ranking": ranking}) if task.key == "reduce_refine" else task
+        for task in record.tasks
+    ]
+    losers = build_report(replace(record, tasks=tasks)).quality["search"]["losers"]
+    assert [(row["name"], row["verified_detections"], row["why"]) for row in losers][:3] == [
+        ("seg_014_0280_0450", 6, "score"),
+        ("seg_006_0120_0300", 4, "verified detections: 4 against 6"),
+        ("seg_021_0420_0450", None, "score"),
+    ]
+
+
 def test_registered_shares() -> None:
     shares = QUALITY["registration"]
     assert (shares["share_of_frames"], shares["share_of_video"]) == (0.8, pytest.approx(4 / 360, abs=1e-4))

@@ -1,15 +1,20 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from core.errors import NoReconstruction, StageFailed
+from core.roi import Crop
 from core.settings import make_settings
+from core.settings.groups import MapperSettings
+from core.sparse.cases import Case, run_case
 from core.sparse.reduce import reduce_cases, reduce_refined
 from core.stage import StageTask
 from core.stages import reduce_coarse, reduce_refine
+from tests.core.sparse.scene import HEIGHT, WIDTH, make_scene, view_graph, write_graph
 
 
 def row(name: str, registered: int, points: int, **more: Any) -> dict[str, Any]:
@@ -34,7 +39,8 @@ def task(facts: dict[str, Any], out: Path = Path()) -> StageTask:
     for key, folder in inputs.items():
         (folder / "model").mkdir(parents=True, exist_ok=True)
         (folder / "model" / "points3D.bin").write_text(key)
-    return StageTask("reduce", {}, make_settings(), inputs, facts, Path(), None, out)
+    settings = make_settings("default", {"model.prefer_verified": False})
+    return StageTask("reduce", {}, settings, inputs, facts, Path(), None, out)
 
 
 def test_images_count_before_points() -> None:
@@ -114,3 +120,45 @@ def test_without_the_veto_the_score_alone_counts() -> None:
     rows = [row("seg_000", 180, 9, **BENT), row("seg_001", 30, 5)]
     assert reduce_cases(rows, veto=False)["best"] == "seg_000"
     assert reduce_refined(rows[0], [], veto=False)["best"] == "seg_000"
+
+
+def test_verified_detections_count_between_trust_and_size() -> None:
+    best = row("seg_000", 180, 9, verified_detections=40)
+    facts = reduce_refined(best, [row("refine_000", 220, 90, verified_detections=39)])
+    assert [item["name"] for item in facts["ranking"]] == ["seg_000", "refine_000"]
+    assert facts["ranking"][0]["verified_detections"] == 40
+    assert reduce_refined(best, [row("refine_000", 170, 8, verified_detections=41)])["best"] == "refine_000"
+    assert reduce_refined(best, [row("refine_000", 180, 10, verified_detections=40)])["best"] == "refine_000"
+    bent = row("refine_000", 220, 90, verified_detections=90, **BENT)
+    assert reduce_refined(best, [bent])["best"] == "seg_000"
+
+
+def test_the_stage_counts_the_detections_of_every_model(tmp_path: Path) -> None:
+    """The smaller model shows the frame of the only detection."""
+    scene = make_scene(20)
+    graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
+    facts, inputs = {}, {}
+    for key, start, end in (("coarse/seg_000", 0, 13), ("refine/refine_000", 12, 20)):
+        model = run_case(Case(graph, start, end, MapperSettings(), 0)).model
+        inputs[key] = tmp_path / key
+        (inputs[key] / "model").mkdir(parents=True)
+        model.write_binary(inputs[key] / "model")
+        facts[key] = row(key.split("/")[1], model.num_reg_images(), model.num_points3D())
+    crop = Crop(0, 0, WIDTH, HEIGHT, WIDTH, HEIGHT)
+    box = {"id": 0, "key": "1.7", "time_s": 1.7, "label": "dent", "box": [0.2, 0.2, 0.8, 0.8], "source_index": 34}
+    for name, value in (
+        ("frames/crop.json", crop.to_dict()),
+        ("frames/frames.json", [{"index": i, "source_index": 2 * i} for i in range(20)]),
+        ("annotations/detections.json", [box]),
+    ):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(json.dumps(value))
+        inputs[name.split("/")[0]] = (tmp_path / name).parent
+    for prefer, winner in ((True, "refine_000"), (False, "seg_000")):
+        out = tmp_path / str(prefer)
+        settings = make_settings("default", {"model.prefer_verified": prefer})
+        all_facts = {**facts, "reduce_coarse": {"best": "seg_000"}}
+        found = reduce_refine.run(StageTask("reduce_refine", {}, settings, inputs, all_facts, Path(), None, out)).facts
+        assert found["best"] == winner
+        counts = [item.get("verified_detections") for item in found["ranking"]]
+        assert counts == ([1, 0] if prefer else [None, None])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,3 +45,15 @@ def read_features(path: Path) -> FrameFeatures:
             return FrameFeatures(data["keypoints"], data["scores"], data["descriptors"])
     except (OSError, KeyError, ValueError) as error:
         raise StageFailed(f"cannot read the features of a frame: {path.name}: {error}", where="features") from error
+
+
+class _Files(dict[int, Path]):
+    """Feature files by frame; asking for one that no chunk has is a broken plan."""
+
+    def __missing__(self, frame: int) -> Path:
+        raise StageFailed(f"frame {frame} has no features", where="features")
+
+
+def feature_files(chunks: Iterable[Path]) -> dict[int, Path]:
+    """Feature file of every frame, over the folders of all chunks; `StageFailed` for a frame without one."""
+    return _Files({int(path.stem): path for folder in chunks for path in sorted(folder.glob("[0-9]*.npz"))})

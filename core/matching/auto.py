@@ -4,32 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
 from core.matching.mutual_nearest import Matches, mutual_nearest, unit_descriptors
+from core.matching.outcome import LIGHTGLUE, MUTUAL_NEAREST, MatchedPair
 from core.settings.groups import FeatureSettings, MatchSettings
-from core.verification import STRONG_INLIERS, TwoViewGeometry, Verifier
-
-MUTUAL_NEAREST = 0
-LIGHTGLUE = 1
+from core.verification import STRONG_INLIERS, Verifier
 
 GIVE_UP_AFTER = 2
 """Pairs in vain after which LightGlue is not tried on a frame that nothing has matched yet."""
-
-
-@dataclass(frozen=True)
-class MatchedPair:
-    """Outcome of one pair."""
-
-    method: int
-    """`MUTUAL_NEAREST` or `LIGHTGLUE`: whose matches these are."""
-    n_matches: int
-    """Matches before verification."""
-    geometry: TwoViewGeometry
-    tried_lightglue: bool = False
 
 
 class Patience:

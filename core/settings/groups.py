@@ -202,7 +202,7 @@ class ModelSettings(Group):
         le=8,
     )
     confirm: bool = option(
-        True, "map the winner again from scratch with COLMAP's bundle adjustment", source="decision 6"
+        True, "map a winner that started warm again from scratch, with COLMAP's bundle adjustment", source="decision 6"
     )
     register_rest: bool = option(True, "go on mapping over all remaining frames", source="method")
     join: bool = option(True, "join what is left over through images that both models have", source="method")

@@ -25,8 +25,6 @@ from core.sparse.view_graph import Frames, within
 from core.verification import Verifier
 from core.viewgraph import make_table
 
-LENS = "SIMPLE_RADIAL_FISHEYE"
-
 KEYPOINTS = 1000
 """Strongest keypoints per frame that take part."""
 
@@ -74,7 +72,7 @@ def choose_spans(n_frames: int, length: int, count: int, load: Load) -> list[tup
 
 
 def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Load, report: Report) -> SpanFocal:
-    """Map one span from `camera` (of the model `LENS`) and refine its focal length and k1.
+    """Map one span from `camera` (of the model `core.sparse.lens.ESTIMATE_MODEL`) and refine its focal length and k1.
 
     Args:
         span: half-open interval of frames.

@@ -10,9 +10,10 @@ import pycolmap
 
 from core.flags import Flag
 from core.settings.groups import CameraSettings
-from core.sparse.focal import LENS
 
 MODEL = "OPENCV_FISHEYE"
+ESTIMATE_MODEL = "SIMPLE_RADIAL_FISHEYE"
+"""Of the short spans that the estimate maps, see `core.sparse.focal`."""
 
 MIN_REGISTERED, MIN_POINTS = 8, 100
 """Registered images and points below which a start has found nothing."""
@@ -54,7 +55,12 @@ def start_lens(frames: Mapping[str, Any], settings: CameraSettings, fov_deg: flo
     cx, cy = principal_point(frames, settings)
     focal = focal_from_fov(fov_deg, int(frames["source_width"]))
     return pycolmap.Camera(
-        camera_id=1, model=LENS, width=width, height=height, params=[focal, cx, cy, 0.0], has_prior_focal_length=True
+        camera_id=1,
+        model=ESTIMATE_MODEL,
+        width=width,
+        height=height,
+        params=[focal, cx, cy, 0.0],
+        has_prior_focal_length=True,
     )
 
 

@@ -14,7 +14,7 @@ from core.errors import NoReconstruction, StageFailed
 
 Row = Mapping[str, Any]
 
-WINNER_FIELDS = ("start", "end", "kind", "registered_images", "points3D")
+WINNER_FIELDS = ("start", "end", "kind", "registered_images", "points3D", "start_mode")
 RANKING_FIELDS = ("name", "verified_detections", "registered_images", "points3D")
 
 

@@ -4,27 +4,23 @@ from __future__ import annotations
 
 import json
 
-import torch
-
-from core.features.io import read_features
+from core.features.io import feature_files, read_features
 from core.flags import Flag
 from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
-from core.stages.matches import feature_folders, match_all
 from core.verification import read_camera
 from core.viewgraph import PairTable, join_tables, make_table, read_table, table_facts, write_table
 
 
 def run(task: StageTask) -> StageResult:
     """Write ``pairs.npz`` with the further pairs and ``dropped.json`` with the pairs over jumps."""
-    torch.set_num_threads(task.threads)
     rows = sorted(
         json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8")), key=lambda row: row["index"]
     )
     n_search = sum(row["role"] != "added" for row in rows)
     position = positions([float(row["time_s"]) for row in rows], n_search)
-    files = feature_folders(task)
+    files = feature_files(folder for _, folder in task.fan_in("features"))
     keypoints = [read_features(files[index]).keypoints for index in range(len(rows))]
     camera = read_camera(task.input("camera") / "camera.json")
     size = int(camera.width), int(camera.height)
@@ -39,7 +35,7 @@ def run(task: StageTask) -> StageResult:
     gaps = find_gaps(table, n_search)
 
     def tried(pairs: list[Pair]) -> PairTable:
-        found = make_table(pairs, match_all(task, pairs))
+        found = _matched(task, pairs)
         usual = density * ~dropped
         return select(found, dense_enough(found, match_density(found, keypoints, *size), table, usual, position))
 
@@ -63,6 +59,16 @@ def run(task: StageTask) -> StageResult:
             "flags": [flag.to_dict() for flag in (*_jump_flags(jumps), *_gap_flags(spanned))],
         }
     )
+
+
+def _matched(task: StageTask, pairs: list[Pair]) -> PairTable:
+    # Most videos have no gap, and the matchers are slow to load.
+    import torch
+
+    from core.stages.matches import match_all
+
+    torch.set_num_threads(task.threads)
+    return make_table(pairs, match_all(task, pairs))
 
 
 def _jump_flags(jumps: list[int]) -> list[Flag]:

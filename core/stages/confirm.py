@@ -1,4 +1,4 @@
-"""Stage `confirm`: the winner mapped again from scratch with COLMAP's bundle adjustment."""
+"""Stage `confirm`: a winner that went on from another case's model is mapped again from scratch."""
 
 from __future__ import annotations
 
@@ -21,10 +21,14 @@ def _veto(case: Case) -> Callable[[Any], bool]:
 
 
 def run(task: StageTask) -> StageResult:
-    """Write the model to go on with; the searched one as it is when `model.confirm` is off."""
+    """Write the model to go on with: the searched one as it is when it comes from scratch, or `model.confirm` is off.
+
+    A warm model inherits what was wrong with the one that it started from; one from scratch has nothing to confirm.
+    """
     winner = task.facts["reduce_refine"]
+    from_scratch = winner["start_mode"] == "scratch"
     model, kept = pycolmap.Reconstruction(task.input("reduce_refine") / "model"), "searched"
-    if task.settings.model.confirm:
+    if task.settings.model.confirm and not from_scratch:
         # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
         case = Case(
             task.input("graph"), int(winner["start"]), int(winner["end"]), task.settings.mapper, task.settings.seed
@@ -46,7 +50,7 @@ def run(task: StageTask) -> StageResult:
             "points3D": stats.points3D,
             "mean_reprojection_error_px": stats.mean_reprojection_error_px,
             "median_reprojection_error_px": stats.median_reprojection_error_px,
-            "start_mode": "scratch" if kept == "confirmed" else "searched",
+            "start_mode": "scratch" if kept == "confirmed" or from_scratch else winner["start_mode"],
             "kept": kept,
         }
     )

@@ -7,18 +7,17 @@ from functools import lru_cache
 
 import torch
 
-from core.features.io import FrameFeatures, read_features
+from core.features.io import FrameFeatures, feature_files, read_features
 from core.sparse.focal import choose_spans, find_focal, joined
 from core.sparse.lens import start_lens
 from core.stage import StageResult, StageTask
-from core.stages.matches import feature_folders
 
 
 def run(task: StageTask) -> StageResult:
     """Map a few spans from the task's field of view; a video that gives no model registers 0 images."""
     torch.set_num_threads(task.threads)
     settings, frames = task.settings, task.facts["frames"]
-    files = feature_folders(task)
+    files = feature_files(folder for _, folder in task.fan_in("features"))
 
     @lru_cache(maxsize=64)
     def load(index: int) -> FrameFeatures:

@@ -6,10 +6,9 @@ import json
 
 import numpy as np
 
-from core.features.io import read_features
+from core.features.io import feature_files, read_features
 from core.matching.bridges import select
 from core.stage import StageResult, StageTask
-from core.stages.matches import feature_folders
 from core.verification import read_camera
 from core.viewgraph import graph_facts, join_tables, read_table, write_database, write_table
 
@@ -26,7 +25,7 @@ def run(task: StageTask) -> StageResult:
     write_table(task.out / "graph.npz", table)
     task.report(0.2, 1, "writing the database")
     rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))
-    files = feature_folders(task)
+    files = feature_files(folder for _, folder in task.fan_in("features"))
     camera = read_camera(task.input("camera") / "camera.json")
     keypoints = (read_features(files[index]).keypoints for index in range(len(rows)))
     write_database(task.out / "database.db", camera, keypoints, table)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from pathlib import Path
 
 import torch
 
-from core.errors import StageFailed
-from core.features.io import FrameFeatures, read_features
-from core.matching.auto import MatchedPair, PairMatcher, Patience
+from core.features.io import FrameFeatures, feature_files, read_features
+from core.matching.auto import PairMatcher, Patience
+from core.matching.outcome import MatchedPair
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
 from core.verification import Verifier, read_camera
@@ -36,7 +35,7 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
     camera = read_camera(task.input("camera") / "camera.json")
     verifier = Verifier(camera, settings.verification, settings.seed)
     matcher = PairMatcher(settings.matching, settings.features, verifier)
-    folders = feature_folders(task)
+    files = feature_files(folder for _, folder in task.fan_in("features"))
     order = sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair))
     last_use = {frame: row for row, pair in enumerate(order) for frame in pair}
     loaded: dict[int, FrameFeatures] = {}
@@ -46,7 +45,7 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
         task.report(row, len(pairs), f"frames {pair[0]} and {pair[1]}")
         for frame in pair:
             if frame not in loaded:
-                loaded[frame] = read_features(folders[frame])
+                loaded[frame] = read_features(files[frame])
         found = matcher.match(loaded[pair[0]], loaded[pair[1]], rematch=not patience.has_run_out(pair))
         patience.note(pair, found)
         matched[pair] = found
@@ -61,17 +60,3 @@ def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
     times = [float(row["time_s"]) for row in sorted(rows, key=lambda row: int(row["index"]))]
     n_search = sum(row["role"] != "added" for row in rows)
     return match_pairs(times, n_search, task.settings.matching.window)
-
-
-class _Files(dict[int, Path]):
-    """Feature files by frame; asking for one that no chunk has is a broken plan."""
-
-    def __missing__(self, frame: int) -> Path:
-        raise StageFailed(f"frame {frame} has no features", where="features")
-
-
-def feature_folders(task: StageTask) -> dict[int, Path]:
-    """Feature file of every frame, over all chunks."""
-    return _Files(
-        {int(path.stem): path for _, folder in task.fan_in("features") for path in sorted(folder.glob("[0-9]*.npz"))}
-    )

@@ -77,12 +77,12 @@ def test_the_rest_of_the_frames_is_registered_on_both_sides(graph, winner, scene
     assert winner.num_reg_images() == 10
 
 
-def run_stages(graph, winner, out, **options):
+def run_stages(graph, winner, out, start_mode="warm", **options):
     settings = make_settings("default", {"mapper.search_tracks": 150, "model.align_keypoints": False, **options})
     for name in ("reduce_refine/model", "confirm", "extend"):
         (out / name).mkdir(parents=True)
     winner.write_binary(out / "reduce_refine/model")
-    reduced = {"best": "seg_000_0004_0014", "start": 4, "end": 14, "kind": "coarse"}
+    reduced = {"best": "seg_000_0004_0014", "start": 4, "end": 14, "kind": "coarse", "start_mode": start_mode}
 
     def task(key, inputs, facts):
         return StageTask(key, {}, settings, inputs, facts, Path("video"), None, out / key)
@@ -110,10 +110,17 @@ def test_the_stages_write_what_they_promise(graph, winner, tmp_path, scene):
 def test_what_is_switched_off_is_not_done(graph, winner, tmp_path):
     off = {"model.confirm": False, "model.register_rest": False, "model.final_adjustment": False}
     confirmed, extended = run_stages(graph, winner, tmp_path, **off)
-    assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "searched")
+    assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "warm")
     assert extended["registered_images"] == 10
     assert extended["adjustment"] is None
     assert extended["principal_point_refined"] is False
     assert {flag["code"] for flag in extended["checks"]} <= {"coverage_low"}
     same = [pycolmap.Reconstruction(tmp_path / name / "model") for name in ("reduce_refine", "extend")]
+    assert model_stats(same[0]) == model_stats(same[1])
+
+
+def test_a_winner_from_scratch_has_nothing_to_confirm(graph, winner, tmp_path):
+    confirmed, _ = run_stages(graph, winner, tmp_path, "scratch", **{"model.final_adjustment": False})
+    assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "scratch")
+    same = [pycolmap.Reconstruction(tmp_path / name / "model") for name in ("reduce_refine", "confirm")]
     assert model_stats(same[0]) == model_stats(same[1])

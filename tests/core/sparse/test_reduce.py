@@ -29,6 +29,7 @@ def row(name: str, registered: int, points: int, **more: Any) -> dict[str, Any]:
         "reason": reason,
         "registered_images": registered,
         "points3D": points,
+        "start_mode": "scratch",
         **more,
     }
 

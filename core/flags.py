@@ -5,7 +5,7 @@ A flag is a small fact. Stages put flags into their facts, the report collects t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -83,3 +83,8 @@ class Flag:
 def worst(flags: list[Flag]) -> Severity | None:
     """The highest severity among `flags`; None without flags."""
     return max((flag.severity for flag in flags), key=SEVERITIES.index, default=None)
+
+
+def error_codes(checks: Iterable[Mapping[str, Any]]) -> str:
+    """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is vetoed."""
+    return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == "error"}))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 from core.checks.parallax import cases_parallax
-from core.flags import Flag
+from core.flags import Flag, error_codes
 from core.report.funnel import funnel, losses, support_counts
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
@@ -203,7 +203,7 @@ def _why_lost(row: Row, checks: Sequence[Row], verified: int | None, of_winner: 
     if row["status"] != "succeeded":
         return str(row["reason"] or row["status"])
     if row["vetoed"]:
-        return "vetoed: " + ", ".join(sorted({check["code"] for check in checks if check["severity"] == "error"}))
+        return f"vetoed: {error_codes(checks)}"
     if verified is not None and of_winner is not None and verified < of_winner:
         return f"verified detections: {verified} against {of_winner}"
     return "score"

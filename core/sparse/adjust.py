@@ -124,16 +124,9 @@ def adjust(
     rounds, stable = _refine(work, cache, options, schedule, most, lambda r: progress(0.5 * r, "bundle adjustment"))
     progress(0.5, "keypoints and tracks")
     trimming, aligned = _settle(work, schedule[-1], align, trim_tracks, threads)
-    point, radial = PrincipalPoint(False, "off"), RadialTerms(True, "off")
-    judge_radial = judge_radial and trimming is not None
-    if refine_principal_point or judge_radial:
-        progress(0.7, "lens")
-        said = pycolmap.Reconstruction(work)
-        if trimming is not None:
-            keep_agreeing(said, TRIAL_POINTS)
-        trial = try_lens(said, adjustment_options(refine_principal_point, loss_scale_px, threads))
-        point = judge_principal_point(trial) if refine_principal_point else point
-        radial = judge_radial_terms(trial) if judge_radial else radial
+    progress(0.7, "lens")
+    trial_options = adjustment_options(refine_principal_point, loss_scale_px, threads)
+    point, radial = _judge_lens(work, trial_options, trimming is not None, judge_radial)
     if trimming is not None and (point.refined or not radial.kept):
         terms = TERMS[-1:] if radial.kept else (0,)
         more = trim(work, lambda scale: adjustment_options(point.refined, scale, threads), terms)
@@ -176,6 +169,27 @@ def _settle(
         elif align is not None:
             solve(work, options)
     return trimming, aligned
+
+
+def _judge_lens(model: Any, options: Any, trimmed: bool, judge_radial: bool) -> tuple[PrincipalPoint, RadialTerms]:
+    """Which parts of the lens to free, by a trial on a copy.
+
+    Args:
+        model: with cameras that have converged.
+        options: of the trial; the principal point is judged when they free it.
+        trimmed: the tracks that agree best are asked, not all.
+        judge_radial: judge the radial terms too, which takes trimmed tracks.
+    """
+    point, radial = PrincipalPoint(False, "off"), RadialTerms(True, "off")
+    judge_radial = judge_radial and trimmed
+    if options.refine_principal_point or judge_radial:
+        said = pycolmap.Reconstruction(model)
+        if trimmed:
+            keep_agreeing(said, TRIAL_POINTS)
+        trial = try_lens(said, options)
+        point = judge_principal_point(trial) if options.refine_principal_point else point
+        radial = judge_radial_terms(trial) if judge_radial else radial
+    return point, radial
 
 
 def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> Any:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.sparse.alignment_kernels import align_patches, take_patches
+from core.sparse.points import poses_of
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -183,13 +184,7 @@ def _weights() -> F64:
 
 def _views(model: Any) -> _Views:
     ids = sorted(int(i) for i in model.reg_image_ids())
-    poses = [model.image(i).cam_from_world() for i in ids]
-    return _Views(
-        ids,
-        [str(model.image(i).name) for i in ids],
-        np.array([pose.rotation.matrix() for pose in poses]).reshape(-1, 3, 3),
-        np.array([pose.translation for pose in poses]).reshape(-1, 3),
-    )
+    return _Views(ids, [str(model.image(i).name) for i in ids], *poses_of(model, ids))
 
 
 def _tracks(model: Any, views: _Views) -> _Tracks:

@@ -6,6 +6,7 @@ fisheye models (`SIMPLE_FISHEYE`, `SIMPLE_RADIAL_FISHEYE`, `RADIAL_FISHEYE`, `OP
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -107,15 +108,20 @@ def _places(model: Any, seen: Observations) -> F64:
 
 def _cameras(model: Any, seen: Observations) -> tuple[F64, F64, F64]:
     """Rotations (f, 3, 3), translations (f, 3) and (fx, fy, cx, cy, k1, k2, k3, k4)."""
-    poses = [model.image(i).cam_from_world() for i in seen.image_ids.tolist()]
     camera = next(iter(model.cameras.values()))
     params, lens = np.array(camera.params), np.zeros(8)
     lens[:2] = params[camera.focal_length_idxs()]
     lens[2:4] = params[camera.principal_point_idxs()]
     radial = params[camera.extra_params_idxs()]
     lens[4 : 4 + len(radial)] = radial
+    return *poses_of(model, seen.image_ids.tolist()), lens
+
+
+def poses_of(model: Any, image_ids: Sequence[int]) -> tuple[F64, F64]:
+    """cam_from_world of registered images: rotations (f, 3, 3) and translations (f, 3)."""
+    poses = [model.image(i).cam_from_world() for i in image_ids]
     R = np.array([pose.rotation.matrix() for pose in poses]).reshape(-1, 3, 3)
-    return R, np.array([pose.translation for pose in poses]).reshape(-1, 3), lens
+    return R, np.array([pose.translation for pose in poses]).reshape(-1, 3)
 
 
 @compiled

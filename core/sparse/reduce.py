@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
+from core.flags import error_codes
 
 Row = Mapping[str, Any]
 
@@ -61,7 +62,7 @@ def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) 
     winner = ranking[0] if better else coarse_best
     others = [row for row in (*ranking, coarse_best) if row["name"] != winner["name"]]
     if not standing(winner, veto)[0]:
-        codes = ", ".join(sorted({check["code"] for check in winner["checks"] if check["severity"] == "error"}))
+        codes = error_codes(winner["checks"])
         raise NoReconstruction(
             f"every model was vetoed by the checks; the largest, {winner['name']}: {codes}", where="search"
         )

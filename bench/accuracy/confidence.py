@@ -14,16 +14,21 @@ N_BINS = 10
 
 
 def score_confidence(placements: list[Placement]) -> dict[str, Any]:
-    """Expected calibration error and AUROC over `mapped` rows.
+    """Expected calibration error and AUROC over `mapped` rows; `stated` has each row's confidence and 1 if it is right.
 
     A row without a confidence counts as 1.0 once any row has one; without any there is nothing to score.
     """
     mapped = [item for item in placements if item.mapped]
     if all(item.confidence is None for item in mapped):
-        return {"rows": len(mapped), "ece": None, "auroc": None}
+        return {"rows": len(mapped), "ece": None, "auroc": None, "stated": []}
     confidence = np.array([1.0 if item.confidence is None else item.confidence for item in mapped])
     right = np.array([item.right for item in mapped])
-    return {"rows": len(mapped), "ece": calibration_error(confidence, right), "auroc": auroc(confidence, right)}
+    return {
+        "rows": len(mapped),
+        "ece": calibration_error(confidence, right),
+        "auroc": auroc(confidence, right),
+        "stated": np.column_stack([confidence.round(4), right]).tolist(),
+    }
 
 
 def calibration_error(confidence: NDArray[np.float64], right: NDArray[np.bool_]) -> float:

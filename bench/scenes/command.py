@@ -29,6 +29,7 @@ def command(arguments: argparse.Namespace) -> None:
     """Run what is missing and print the table; a line on standard error tells each scene's end."""
     # Imported here so that --help does not load the vision libraries.
     from bench.scenes.make import is_made, make_scene
+    from bench.scenes.pooled import confidence_line, false_boxes_line, hard_half
     from bench.scenes.run import DEFAULT, THESIS, Bench, Column
     from bench.scenes.table import markdown
 
@@ -61,3 +62,12 @@ def command(arguments: argparse.Namespace) -> None:
         taken = "gone on with" if found[-1]["seconds"] is None else f"{found[-1]['seconds']:.0f} s"
         print(f"{scene.name}: {found[-1]['verdict']}, {taken}", file=sys.stderr, flush=True)
     print(markdown(scenes, found))
+    can = [one for scene, one in zip(scenes, found, strict=True) if scene.expect == "mapped"]
+    if not can:
+        return
+    print("\n" + confidence_line("confidence", can) + "\n" + false_boxes_line(can))
+    thesis = {scene.name: bench.known(scene, THESIS) for scene in scenes if scene.expect == "mapped"}
+    if column is DEFAULT and all(thesis.values()):
+        names = hard_half(scenes, thesis)
+        hard = [one for one in can if one["scene"] in names]
+        print(confidence_line(f"hard half by the thesis's column ({', '.join(names)})", hard))

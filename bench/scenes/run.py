@@ -51,7 +51,7 @@ class Bench:
 
     def score(self, scene: Scene, column: Column) -> dict[str, Any]:
         """The score of a scene, from before when nothing that it depends on has changed."""
-        path = self.folder / "results" / column.name / f"{scene.name}.json"
+        path = self._path(scene, column)
         key = f"{scene.digest()[:16]}-{_options_key(column)}-{program_digest()[:16]}"
         known = _read(path)
         if known.get("key") == key:
@@ -66,6 +66,13 @@ class Bench:
         part.write_text(json.dumps(found, indent=1, allow_nan=False))
         part.rename(path)
         return found
+
+    def known(self, scene: Scene, column: Column) -> dict[str, Any]:
+        """The last score of a scene, by whatever code; empty when there is none."""
+        return _read(self._path(scene, column))
+
+    def _path(self, scene: Scene, column: Column) -> Path:
+        return self.folder / "results" / column.name / f"{scene.name}.json"
 
     def _run(self, scene: Scene, column: Column, source: Path) -> dict[str, Any]:
         out = self.folder / "runs" / column.name / scene.name

@@ -7,6 +7,7 @@ from math import inf, isinf
 from statistics import median
 from typing import Any
 
+from bench.scenes.pooled import right_share
 from bench.scenes.spec import Scene
 
 HEAD = (
@@ -16,6 +17,7 @@ HEAD = (
     "mapped",
     "place median / 95 %, % of chord",
     "wrong",
+    "right, of all placeable",
     "defects found / split / extra",
     "false boxes confident and lasting",
     "ECE",
@@ -49,6 +51,7 @@ def _row(scene: Scene, one: Found) -> list[str]:
         f"{_percent(place['mapped_share'])} of {place['placeable']}",
         f"{_of_chord(scene, place['position_median_mm'])} / {_of_chord(scene, place['position_p95_mm'])}",
         _percent(place["wrong_mapped_share"]),
+        _percent(right_share(one)),
         f"{defects['found']} of {defects['expected']} / {defects['split']} / {defects['extra']}",
         _percent(place["false_boxes"]["mapped_confident_persistent_share"]),
         _number(confidence["ece"]),
@@ -72,6 +75,7 @@ def _median(scenes: Sequence[Scene], found: Sequence[Found]) -> list[str]:
         middle([_share(scene, score["placement"][name]) for scene, score in chosen])
         for name in ("position_median_mm", "position_p95_mm")
     ]
+    right = median([right_share({"score": score}) for _, score in chosen])
     wrong = middle([score["placement"]["wrong_mapped_share"] for _, score in chosen])
     expected = sum(score["defects"]["expected"] for _, score in chosen)
     sums = [sum(score["defects"][name] for _, score in chosen) for name in ("found", "split", "extra")]
@@ -82,6 +86,7 @@ def _median(scenes: Sequence[Scene], found: Sequence[Found]) -> list[str]:
         _percent(mapped),
         " / ".join("-" if value is None else f"{100 * value:.1f}" for value in places),
         _percent(wrong),
+        _percent(right),
         f"{sums[0]} of {expected} / {sums[1]} / {sums[2]} in all",
         "",
         "",

@@ -11,6 +11,7 @@ import pytest
 
 from bench.scenes import run
 from bench.scenes.fit import Sample, fit, held_out, report
+from bench.scenes.pooled import confidence_line, false_boxes_line, hard_half, right_share
 from bench.scenes.run import DEFAULT, THESIS, Bench
 from bench.scenes.spec import Lens, Scene
 
@@ -75,6 +76,8 @@ def test_a_score_is_kept_until_something_it_depends_on_changes(tmp_path: Path, m
     for _ in range(2):
         assert bench.score(TINY, DEFAULT)["verdict"] == "ok"
     assert calls == ["default/5"]
+    assert bench.known(TINY, DEFAULT)["verdict"] == "ok"
+    assert bench.known(TINY, THESIS) == {}
     bench.score(TINY, THESIS)
     bench.score(replace(TINY, seed=6), DEFAULT)
     assert calls == ["default/5", "thesis/5", "default/6"]
@@ -85,3 +88,32 @@ def test_a_score_is_kept_until_something_it_depends_on_changes(tmp_path: Path, m
     (tmp_path / "results" / "default" / "tiny.json").write_text("cut off")
     bench.score(replace(TINY, seed=6), DEFAULT)
     assert len(calls) == 5
+
+
+def scored(mapped: int, wrong: int, placeable: int, stated: list[list[float]], false: int = 0) -> dict[str, Any]:
+    boxes = {"count": false, "mapped_confident_persistent_share": 0.5 if false else None}
+    place = {"mapped_placeable": mapped, "wrong_mapped": wrong, "placeable": placeable, "false_boxes": boxes}
+    return {"score": {"placement": place, "confidence": {"stated": stated}}}
+
+
+def test_the_hard_half_has_the_smallest_shares_of_right_places() -> None:
+    scenes = [replace(TINY, name=name) for name in "abcde"] + [replace(TINY, name="f", expect="flagged")]
+    thesis = {
+        "a": scored(9, 0, 10, []),
+        "b": scored(9, 8, 10, []),
+        "c": scored(40, 0, 100, []),
+        "d": scored(10, 0, 10, []),
+        "e": scored(5, 0, 10, []),
+    }
+    assert hard_half(scenes, thesis) == ["b", "c"]
+    assert right_share(scored(0, 0, 0, [])) == 0.0
+
+
+def test_figures_over_scenes_are_of_all_their_rows() -> None:
+    found = [scored(2, 0, 2, [[0.9, 1.0], [0.8, 1.0]], 2), scored(2, 1, 2, [[0.2, 0.0], [0.9, 1.0]])]
+    line = confidence_line("confidence", found)
+    assert "4 mapped rows of 2 scenes, 75.0 % right" in line
+    assert "AUROC 1.000" in line
+    assert "calibration error 0.150" in line
+    assert false_boxes_line(found) == "false boxes: 2; mapped with confidence and persistence above 0.5: 1"
+    assert "no mapped row" in confidence_line("x", [scored(0, 0, 1, [])])

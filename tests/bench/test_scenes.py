@@ -144,6 +144,8 @@ def test_the_table_has_a_row_for_every_scene_and_the_median() -> None:
         "placement": {
             "mapped_share": 0.9,
             "placeable": 10,
+            "mapped_placeable": 9,
+            "wrong_mapped": 0,
             "position_median_mm": 0.27,
             "position_p95_mm": 0.54,
             "wrong_mapped_share": 0.0,
@@ -156,6 +158,6 @@ def test_the_table_has_a_row_for_every_scene_and_the_median() -> None:
     hopeless = {**ok, "verdict": "refused", "flags": ["no_parallax"]}
     text = markdown([SUITE[0], SUITE[-1]], [ok, hopeless]).splitlines()
     assert len(text) == 5
-    assert "| easy | ok | 100.0 % | 90.0 % of 10 | 1.0 / 2.0 | 0.0 % | 3 of 4 / 0 / 1 |" in text[2]
+    assert "| easy | ok | 100.0 % | 90.0 % of 10 | 1.0 / 2.0 | 0.0 % | 90.0 % | 3 of 4 / 0 / 1 |" in text[2]
     assert "refused (no_parallax): as expected" in text[3]
     assert "**median scene**" in text[4]

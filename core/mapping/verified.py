@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
-
-import numpy as np
 
 from core.mapping.support import Box, observations_of
 
@@ -24,17 +23,17 @@ def verified_detections(model: Any, boxes: Mapping[int, Sequence[tuple[Box, str]
             are not registered count as not verified.
     """
     registered = set(model.reg_image_ids())
-    lengths: dict[int, int] = {}
+
+    @cache
+    def views(point: int) -> int:
+        return len({element.image_id for element in model.point3D(point).track.elements})
+
     count = 0
     for frame, found in boxes.items():
         if not found or frame + 1 not in registered:
             continue
         seen = observations_of(model.image(frame + 1))
         for box, _ in found:
-            inside = seen.inside(box).tolist()
-            for point in inside:
-                if point not in lengths:
-                    views = {element.image_id for element in model.point3D(point).track.elements}
-                    lengths[point] = len(views)
-            count += int(np.sum([lengths[point] >= MIN_VIEWS for point in inside]) >= MIN_POINTS)
+            confirmed = sum(views(point) >= MIN_VIEWS for point in seen.inside(box).tolist())
+            count += confirmed >= MIN_POINTS
     return count

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
-from typing import Any
 
 from core.mapping.rows import Detection
 from core.mapping.support import boxes_by_frame, open_model
@@ -36,11 +35,11 @@ def _with_verified(task: StageTask, rows: Sequence[Row]) -> list[Row]:
     index = {int(row["source_index"]): int(row["index"]) for row in read_json(frames / "frames.json")}
     detections = [Detection.from_json(row) for row in read_json(task.input("annotations") / "detections.json")]
     boxes = boxes_by_frame(detections, (), index, Crop(**read_json(frames / "crop.json")))
-    found: list[dict[str, Any]] = []
+    found: list[Row] = []
     for number, row in enumerate(rows):
         task.report(number, len(rows), f"detections of {row['name']}")
         count = 0
         if row["status"] == "succeeded":
             count = verified_detections(open_model(task.input(f"{row['kind']}/{row['name']}") / "model"), boxes)
         found.append({**row, "verified_detections": count})
-    return list(found)
+    return found

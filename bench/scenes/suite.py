@@ -5,6 +5,7 @@ Chosen for what makes inspections hard, before any of them was run.
 
 from __future__ import annotations
 
+from bench.scenes.drawn import DRAWN
 from bench.scenes.spec import Lens, Scene, Span
 
 WIDE, MIDDLE, NARROW = Lens(480, 360, 112.0, -0.04), Lens(480, 360, 92.0), Lens(480, 360, 68.0, 0.02)
@@ -45,4 +46,4 @@ CALIBRATION: tuple[Scene, ...] = (
     Scene("fit-noise", 108, _LENS_B, noise=0.035, texture=0.6, false_boxes=0.3, missed=0.6),
 )
 
-FAMILIES = {"suite": SUITE, "calibration": CALIBRATION}
+FAMILIES = {"suite": SUITE, "calibration": CALIBRATION, "drawn": DRAWN}

@@ -25,9 +25,9 @@ lint: setup
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 
 check: lint ## lint, types, layers and unit tests (minutes)
-	$(BIN)/pytest -m "not sample"
+	$(BIN)/pytest -m "not sample and not deployment"
 
-test: lint ## everything, with the runs on the sample
+test: lint ## everything, with whole deployments and the runs on the sample
 	$(BIN)/pytest
 
 bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs

@@ -195,6 +195,7 @@ def test_a_stock_client_uploads_and_goes_on_after_a_cut(backend: Backend, addres
     assert stored(backend, str(uploader.url)) == source.read_bytes()
 
 
+@pytest.mark.deployment
 def test_a_killed_server_corrupts_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """kill -9 in the middle of a PATCH, again and again, each time at another place."""
     monkeypatch.setenv("BLADEATLAS_DATA_DIR", str(tmp_path / "data"))

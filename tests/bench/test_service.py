@@ -44,6 +44,7 @@ def test_a_download_in_ranges_is_the_file(tmp_path: Path, monkeypatch: pytest.Mo
     assert values(transfers.downloads(tmp_path, 1))["bytes are the same"] == "true"
 
 
+@pytest.mark.deployment
 def test_an_upload_goes_on_after_its_client_or_server_was_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -24,6 +24,7 @@ from tests.signals import heed_interrupts
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, journal
 
+pytestmark = pytest.mark.deployment
 ROOT = Path(__file__).resolve().parents[2]
 KILLS = int(os.environ.get("BLADEATLAS_TEST_KILLS", "4"))
 """Crashes of the random test; more of them in a long soak."""
@@ -129,13 +130,13 @@ def test_kill_at_random_moments_changes_nothing(place: Workplace, tmp_path: Path
     assert place.run().state == "succeeded"
     assert place.digests() == undisturbed.digests()
     assert published(place) == published(undisturbed)
+    # A result that was sealed and renamed is adopted by the next start, so no stage ends twice: a kill before its row
+    # is there leaves an attempt that was given back; only one before the rename makes the stage begin once more.
+    assert {key for key, _ in outcomes(place)} == set(place.digests())
     accepted = Counter(key for key, outcome in outcomes(place) if outcome == "succeeded")
-    assert set(accepted) == set(place.digests())
-    # A result that was sealed and renamed is adopted, so a stage that came to its end may have begun once
-    # more only when the kill fell between its last line and the rename.
     assert max(accepted.values()) == 1
     assert place.temporary() == []
-    assert len(journal(place.video)) < 2 * (len(accepted) + 2 * KILLS)
+    assert len(journal(place.video)) < 2 * (len(place.digests()) + 2 * KILLS)
 
 
 def published(place: Workplace) -> list[str]:

@@ -22,7 +22,7 @@ from tests.worker.fake_stages import GRAPH
 from worker.queue import TaskQueue
 
 ALL = ["join", "last", "part/000", "part/001", "split"]
-pytestmark = [pytest.mark.service("redis"), pytest.mark.service("postgresql")]
+pytestmark = [pytest.mark.deployment, pytest.mark.service("redis"), pytest.mark.service("postgresql")]
 
 
 @pytest.fixture

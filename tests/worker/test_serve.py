@@ -18,6 +18,7 @@ from store.models import ApiKey, Inspection
 from tests.worker.deployment import Deployment, wait_for
 from tests.worker.disks import fill, mounted
 
+pytestmark = pytest.mark.deployment
 ALL = ["join", "last", "part/000", "part/001", "split"]
 
 

@@ -217,7 +217,7 @@ class ModelSettings(Group):
         True, "cameras and lens follow from the tracks that agree best, not from all", source="decision 13; thesis off"
     )
     radial_terms: Literal["auto", "always"] = option(
-        "auto", "auto: none where the tracks that agree best ask for none", source="decision 15"
+        "auto", "auto: as many as the tracks that agree best ask for", source="decision 15"
     )
     loss_scale_px: float = option(
         0.0,

@@ -127,10 +127,10 @@ def adjust(
     progress(0.7, "lens")
     trial_options = adjustment_options(refine_principal_point, loss_scale_px, threads)
     point, radial = _judge_lens(work, trial_options, trimming is not None, judge_radial)
-    if trimming is not None and (point.refined or not radial.kept):
-        terms = TERMS[-1:] if radial.kept else (0,)
+    terms = (radial.number,)
+    if trimming is not None and (point.refined or terms != TERMS[-1:]):
         more = trim(work, lambda scale: adjustment_options(point.refined, scale, threads), terms)
-        before_px = trimming.focal_before_px if radial.kept else more.focal_before_px
+        before_px = more.focal_before_px if radial.number == 0 else trimming.focal_before_px
         trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=before_px)
     elif point.refined:
         free = adjustment_options(True, loss_scale_px, threads)
@@ -142,9 +142,9 @@ def adjust(
         progress(0.9, "points")
         set_lens(work, 4)
         _retrack(work, cache, options, align)
-        if radial.kept:
+        if radial.number:
             # Radial terms trade against the focal length: the completed tracks say more of both.
-            more = trim(work, lambda scale: adjustment_options(False, scale, threads), TERMS[-1:])
+            more = trim(work, lambda scale: adjustment_options(False, scale, threads), terms)
             trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
             set_lens(work, 4)
         _filter(work, cache, options)
@@ -180,7 +180,7 @@ def _judge_lens(model: Any, options: Any, trimmed: bool, judge_radial: bool) -> 
         trimmed: the tracks that agree best are asked, not all.
         judge_radial: judge the radial terms too, which takes trimmed tracks.
     """
-    point, radial = PrincipalPoint(False, "off"), RadialTerms(True, "off")
+    point, radial = PrincipalPoint(False, "off"), RadialTerms(TERMS[-1], "off")
     judge_radial = judge_radial and trimmed
     if options.refine_principal_point or judge_radial:
         said = pycolmap.Reconstruction(model)

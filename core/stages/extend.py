@@ -138,7 +138,12 @@ def _adjustment_facts(adjustment: Adjustment) -> Facts:
             "sigma_px": None if point.sigma_px is None else list(point.sigma_px),
             "shift_px": None if point.shift_px is None else list(point.shift_px),
         },
-        "radial_terms": {"decision": radial.reason, "deviation": radial.deviation},
+        "radial_terms": {
+            "decision": radial.reason,
+            "number": radial.number,
+            "first": radial.first,
+            "second": radial.second,
+        },
         "alignment": None if adjustment.aligned is None else asdict(adjustment.aligned),
         "trimming": None if trimming is None else {**asdict(trimming), "shift": trimming.shift},
     }

@@ -7,7 +7,15 @@ import pytest
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust, adjustment_options
 from core.sparse.cases import Case, run_case
-from core.sparse.lens_trial import MIN_IMAGES, MIN_SHIFT_SIGMAS, judge_principal_point, judge_radial_terms, try_lens
+from core.sparse.lens_trial import (
+    MIN_FIRST_SIGMAS,
+    MIN_IMAGES,
+    MIN_SHIFT_SIGMAS,
+    Trial,
+    judge_principal_point,
+    judge_radial_terms,
+    try_lens,
+)
 from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.trimming import set_lens
 from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, make_scene, view_graph, write_graph
@@ -51,22 +59,35 @@ def trial_of(model, **more):
 
 def test_an_equidistant_lens_is_not_given_radial_terms(mapped):
     found = judge_radial_terms(trial_of(seen_through(mapped, 0.0)))
-    assert (found.kept, found.reason) == (False, "insignificant")
-    assert 0.0 < found.deviation < MIN_SHIFT_SIGMAS
+    assert (found.number, found.reason) == (0, "insignificant")
+    assert 0.0 < found.first < MIN_FIRST_SIGMAS
+    assert 0.0 < found.second < MIN_SHIFT_SIGMAS
 
 
 @pytest.mark.parametrize("k1", [0.08, -0.06])
 def test_a_lens_with_radial_terms_keeps_them(mapped, k1):
     trial = trial_of(seen_through(mapped, k1))
     found = judge_radial_terms(trial)
-    assert (found.kept, found.reason) == (True, "significant")
-    assert found.deviation > MIN_SHIFT_SIGMAS
+    assert (found.number > 0, found.reason) == (True, "significant")
+    assert found.first > MIN_FIRST_SIGMAS
     assert trial.camera.params[3] == pytest.approx(k1, abs=0.02)
+
+
+@pytest.mark.parametrize(("k1", "k2", "number"), [(0.02, 0.022, 0), (0.05, 0.03, 1), (-0.06, 0.0, 1), (0.05, 0.05, 2)])
+def test_terms_are_judged_one_by_one(k1, k2, number):
+    """Each has a sigma of 0.012; they are correlated by 0.9: 0.02 beside 0.022 says nothing."""
+    camera = pycolmap.Camera(model="RADIAL_FISHEYE", width=320, height=240, params=[200.0, 160.0, 120.0, k1, k2])
+    covariance = np.zeros((5, 5))
+    covariance[3:, 3:] = 0.012**2 * np.array([[1.0, 0.9], [0.9, 1.0]])
+    found = judge_radial_terms(Trial("", camera, np.array(camera.params), covariance))
+    assert found.number == number
+    assert found.second == pytest.approx(abs(k2) / 0.012)
+    assert found.first == pytest.approx(abs(k1 - 0.9 * k2) / (0.012 * np.sqrt(1 - 0.81)))
 
 
 def test_a_trial_that_holds_the_principal_point_knows_nothing_of_it(mapped):
     trial = trial_of(seen_through(mapped, 0.08), principal_point=False)
-    assert judge_radial_terms(trial).kept
+    assert judge_radial_terms(trial).number > 0
     assert not trial.covariance[1:3].any()
     assert trial.covariance[3, 3] > 0
     assert trial.camera.params[1:3].tolist() == [WIDTH / 2, HEIGHT / 2]
@@ -84,7 +105,7 @@ def test_too_few_images_say_nothing(graph):
     trial = trial_of(few)
     assert judge_principal_point(trial).reason == "few_images"
     radial = judge_radial_terms(trial)
-    assert (radial.kept, radial.reason, radial.deviation) == (True, "few_images", None)
+    assert (radial.number, radial.reason, radial.first, radial.second) == (2, "few_images", None, None)
 
 
 def test_the_adjustment_does_without_terms_that_nothing_asks_for(graph):

@@ -6,6 +6,8 @@ that a result on them says what the next unknown inspection gets.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from bench.scenes.spec import Lens, Scene, Span
@@ -37,7 +39,7 @@ def drawn(name: str, seed: int) -> Scene:
         glare=round(rng.uniform(0.1, 1.3), 2),
         turn_deg=round(n_frames * rng.uniform(0.33, 0.5), 1),
         # A narrow lens is held farther away.
-        distance_mm=round(42.0 * np.sqrt(92.0 / lens.fov_deg) * rng.uniform(0.9, 1.15), 1),
+        distance_mm=round(42.0 * math.sqrt(92.0 / lens.fov_deg) * rng.uniform(0.9, 1.15), 1),
         wobble_mm=round(rng.uniform(1.5, 3.0), 2),
         sweep_mm=round(rng.uniform(6.0, 10.0), 2),
         stall=span if trouble == "stall" else None,

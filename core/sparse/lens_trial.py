@@ -68,7 +68,7 @@ class PrincipalPoint:
 
 @dataclass(frozen=True)
 class RadialTerms:
-    """Whether the lens has radial terms."""
+    """How many radial terms the lens keeps, and what the tracks say of each."""
 
     number: int
     """How many the lens keeps: 0, 1 or 2."""

@@ -132,8 +132,10 @@ def test_kill_at_random_moments_changes_nothing(place: Workplace, tmp_path: Path
     assert published(place) == published(undisturbed)
     # A result that was sealed and renamed is adopted by the next start, so no stage ends twice: a kill before its row
     # is there leaves an attempt that was given back; only one before the rename makes the stage begin once more.
-    assert {key for key, _ in outcomes(place)} == set(place.digests())
-    accepted = Counter(key for key, outcome in outcomes(place) if outcome == "succeeded")
+    ended = outcomes(place)
+    accepted = Counter(key for key, outcome in ended if outcome == "succeeded")
+    given_back = {key for key, outcome in ended if outcome == "released"}
+    assert set(accepted) <= set(place.digests()) <= set(accepted) | given_back
     assert max(accepted.values()) == 1
     assert place.temporary() == []
     assert len(journal(place.video)) < 2 * (len(place.digests()) + 2 * KILLS)

@@ -69,7 +69,7 @@ def test_a_lens_with_radial_terms_keeps_them(mapped, k1):
     trial = trial_of(seen_through(mapped, k1))
     found = judge_radial_terms(trial)
     assert (found.number > 0, found.reason) == (True, "significant")
-    assert found.first > MIN_FIRST_SIGMAS
+    assert found.first > MIN_SHIFT_SIGMAS > MIN_FIRST_SIGMAS
     assert trial.camera.params[3] == pytest.approx(k1, abs=0.02)
 
 

@@ -95,7 +95,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
         _spec("reduce_refine", "model.veto", "model.prefer_verified", version=3, weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
-        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=11, weight=18),
+        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=12, weight=18),
         _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
         _spec("depth", "dense", "seed", version=2, fan_out=True, queue="gpu", weight=24),

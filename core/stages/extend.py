@@ -18,7 +18,7 @@ from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.keypoint_alignment import align_keypoints
-from core.sparse.loose import drop_loose_ends
+from core.sparse.loose import drop_faint_frames, drop_loose_ends
 from core.sparse.mapper import mapper_options, model_stats, open_cache
 from core.stage import Facts, StageResult, StageTask
 from core.video.still import read_mask
@@ -66,6 +66,10 @@ def run(task: StageTask) -> StageResult:
     if settings.final_adjustment:
         adjustment = _adjust(task, model)
         model = adjustment.model
+    if settings.drop_loose:
+        # Counted here, after the filters: until then mismatches hold what nothing holds.
+        model, faint = drop_faint_frames(model)
+        loose = sorted(loose + faint)
     folder = task.out / "model"
     folder.mkdir()
     model.write_binary(folder)

@@ -5,7 +5,7 @@ import pytest
 
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
-from core.sparse.loose import drop_loose_ends
+from core.sparse.loose import drop_faint_frames, drop_loose_ends
 from tests.core.sparse.scene import make_scene, view_graph, write_graph
 
 N, CUT = 24, 18
@@ -53,3 +53,38 @@ def test_what_is_out_of_order_stays_with_what_it_sees(model):
     assert set(range(4)) <= set(dropped) <= set(range(10))
     _, dropped = drop_loose_ends(joined_by(model, 0, cut=13), CUT)
     assert set(range(14, N)) <= set(dropped) <= set(range(8, N))
+
+
+def thinned(model, frame: int, count: int):
+    """A copy in which a frame sees so many points."""
+    work = pycolmap.Reconstruction(model)
+    points = work.image(frame + 1).points2D
+    for k in [k for k, point in enumerate(points) if point.has_point3D()][count:]:
+        work.delete_observation(frame + 1, k)
+    return work
+
+
+def test_a_frame_that_sees_next_to_nothing_is_taken_off_though_no_cut_is_weak(model):
+    work = thinned(model, 10, 25)
+    _, cut = drop_loose_ends(work, N)
+    assert cut == []
+    left, dropped = drop_faint_frames(work)
+    assert dropped == [10]
+    assert frames(left) == [frame for frame in range(N) if frame != 10]
+    assert frames(work) == list(range(N))
+    assert all(element.image_id != 11 for point in left.points3D.values() for element in point.track.elements)
+
+
+def test_frames_that_see_what_is_typical_stay(model):
+    same, dropped = drop_faint_frames(model)
+    assert same is model
+    assert dropped == []
+    _, dropped = drop_faint_frames(thinned(model, 10, 40))
+    assert dropped == []
+
+
+def test_a_model_with_few_points_everywhere_keeps_its_frames(model):
+    poor = model
+    for frame in range(N):
+        poor = thinned(poor, frame, 25)
+    assert drop_faint_frames(poor)[1] == []

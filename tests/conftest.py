@@ -1,15 +1,16 @@
-"""Tests of services: skipped where the service is absent, and the last line says how many and which.
+"""Tests of services and programs: skipped where one is absent, and the last line says how many and which.
 
-With ``BLADEATLAS_REQUIRE_SERVICES=1`` an absent service fails the test instead.
+With ``BLADEATLAS_REQUIRE_SERVICES=1`` an absent one fails the test instead.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import socket
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from urllib.parse import urlsplit
 
 import pytest
@@ -21,6 +22,8 @@ SERVICES = {
     "redis": ("BLADEATLAS_TEST_REDIS_URL", "redis://127.0.0.1:6379/15"),
     "rabbitmq": ("BLADEATLAS_TEST_RABBITMQ_URL", "amqp://guest:guest@127.0.0.1:5672//"),
 }
+TOOLS = {"ffmpeg": ("ffmpeg", "ffprobe")}
+"""Programs that a tool consists of; all of them must be there."""
 _SKIPPED = pytest.StashKey[Counter[str]]()
 
 
@@ -45,15 +48,28 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     for marker in item.iter_markers("service"):
-        name = str(marker.args[0])
-        if name not in SERVICES:
-            pytest.fail(f"unknown service '{name}'; known: {', '.join(SERVICES)}")
-        if _answers(service_url(name)):
-            continue
-        if os.environ.get("BLADEATLAS_REQUIRE_SERVICES") == "1":
-            pytest.fail(f"{name} does not answer at {service_url(name)}, and BLADEATLAS_REQUIRE_SERVICES=1")
-        item.config.stash[_SKIPPED][name] += 1
-        pytest.skip(f"{name} does not answer at {service_url(name)}")
+        name = _known(marker, SERVICES)
+        if not _answers(service_url(name)):
+            _absent(item, name, f"{name} does not answer at {service_url(name)}")
+    for marker in item.iter_markers("tool"):
+        name = _known(marker, TOOLS)
+        missing = [program for program in TOOLS[name] if shutil.which(program) is None]
+        if missing:
+            _absent(item, name, f"{' and '.join(missing)} not found; on Debian: apt-get install {name}")
+
+
+def _known(marker: pytest.Mark, known: Collection[str]) -> str:
+    name = str(marker.args[0])
+    if name not in known:
+        pytest.fail(f"unknown {marker.name} '{name}'; known: {', '.join(known)}")
+    return name
+
+
+def _absent(item: pytest.Item, name: str, why: str) -> None:
+    if os.environ.get("BLADEATLAS_REQUIRE_SERVICES") == "1":
+        pytest.fail(f"{why}, and BLADEATLAS_REQUIRE_SERVICES=1")
+    item.config.stash[_SKIPPED][name] += 1
+    pytest.skip(why)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
@@ -65,9 +81,9 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 def skipped_line(skipped: Counter[str]) -> str:
     """The last line of a test run."""
     if not skipped:
-        return "services: no test was skipped for an absent service"
+        return "services and tools: no test was skipped for an absent one"
     names = ", ".join(f"{name} ({count})" for name, count in sorted(skipped.items()))
-    return f"services: {sum(skipped.values())} tests skipped, absent: {names}"
+    return f"services and tools: {sum(skipped.values())} tests skipped, absent: {names}"
 
 
 @pytest.fixture

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -52,6 +54,21 @@ def test_ci_runs_the_command_of_the_readme() -> None:
     assert found.stdout.strip() == readme_test_command() == "make test"
     assert 'exec bash -euo pipefail -c "$command"' in script
     assert "BLADEATLAS_REQUIRE_SERVICES=1" in script
+    assert "missing+=(ffmpeg)" in script, "without it every test of the tool fails there"
+
+
+@pytest.mark.parametrize(("required", "code", "said"), [("0", 0, "absent: ffmpeg (1)"), ("1", 1, "ffprobe not found")])
+def test_an_absent_tool_is_a_counted_skip_and_in_ci_a_failure(
+    tmp_path: Path, required: str, code: int, said: str
+) -> None:
+    test = tmp_path / "test_it.py"
+    test.write_text("import pytest\n@pytest.mark.tool('ffmpeg')\ndef test_it(): pass\n")
+    (tmp_path / "ffmpeg").touch(mode=0o755)
+    command = [sys.executable, "-m", "pytest", "-p", "tests.conftest", "-c", "pyproject.toml", str(test)]
+    environment = {**os.environ, "PATH": str(tmp_path), "BLADEATLAS_REQUIRE_SERVICES": required}
+    run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert run.returncode == code, run.stdout
+    assert said in run.stdout
 
 
 @pytest.mark.parametrize("name", [".ci/run", "scripts/setup.sh", "scripts/lock.sh"])

@@ -26,6 +26,7 @@ def parser() -> argparse.ArgumentParser:
     _serve(commands)
     probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
     probe.add_argument("video", type=Path, metavar="VIDEO")
+    probe.add_argument("--stream", type=int, metavar="N", help="of several video streams; as input.video_stream")
     _json(probe)
     check = _add(commands, "check", "say what was understood of an annotation file")
     check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")

@@ -13,7 +13,7 @@ from core.video.table import FrameTable
 
 def command(parsed: argparse.Namespace) -> int:
     """Decode the whole video once and say what it holds; a damaged video is described, not refused."""
-    table = probe_video(parsed.video, allow_truncated=True)
+    table = probe_video(parsed.video, allow_truncated=True, stream=parsed.stream)
     if parsed.json:
         print(json.dumps({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1, allow_nan=False))
         return 0
@@ -24,8 +24,14 @@ def command(parsed: argparse.Namespace) -> int:
     print(f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate")
     if info.rotation_deg:
         print(f"  rotated by {info.rotation_deg} degrees; size and boxes are of the frame as shown")
+    if info.streams:
+        print(f"  stream {info.stream} was read of {'; '.join(info.streams)} (--set input.video_stream=N for another)")
+    if info.joined:
+        print(f"  joined from {len(info.joined) + 1} recordings, at frame {', '.join(map(str, info.joined))}")
+    if info.repaired_times:
+        print(f"  {info.repaired_times} frames have no usable time in the file; times are made from the frame rate")
     if info.truncated:
-        print(f"  damaged: {', '.join(info.damage)} (a run needs --allow-truncated)")
+        print(f"  damaged: {'; '.join(info.damage)} (a run needs --allow-truncated)")
     return 0
 
 

@@ -17,7 +17,12 @@ def require_file(path: Path, what: str) -> int:
     Raises:
         BadInput: `missing_file`, `not_a_file`, `unreadable_file` or `empty_file`; the message names the file.
     """
-    if not path.exists():
+    try:
+        there = path.exists()
+    except OSError as error:
+        message = f"the {what} file's name cannot be used: {error.strerror}"
+        raise BadInput(message, code="unreadable_file", where=what) from None
+    if not there:
         raise BadInput(f"the {what} file '{path.name}' does not exist", code="missing_file", where=what)
     if not path.is_file():
         kind = "a directory" if path.is_dir() else "not a regular file"

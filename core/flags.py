@@ -18,6 +18,8 @@ FLAG_CODES: Mapping[str, str] = {
     "interval_clipped": "the preset's interval reached beyond the video and was cut to it",
     "truncated_video": "the video is damaged; only its decodable part was used",
     "times_repaired": "some frames of the video had no usable time of their own; one was filled in",
+    "recording_joined": "the stamps of the video start again: it was joined from recordings, and the times go on",
+    "video_stream_chosen": "the file holds several video streams; the one named was read",
     "annotations_outside_video": "some time keys of the annotations lie outside the video; they have no frame",
     "annotation_times_inexact": "some time keys are no time of any frame; the frame on screen was taken",
     "annotation_times_ambiguous": "the time keys fit several readings that mean other frames; the first was taken",

@@ -33,15 +33,15 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     The first two frames are decoded, the annotations are read in full. What only a full pass can find
     (damage further on, an interval outside the video) the stages say.
     """
-    check_video(video)
+    check_video(video, settings.input.video_stream)
     if annotations is not None:
         load_annotations(annotations)
     check_roi(settings)
 
 
-def check_video(video: Path) -> dict[str, Any]:
+def check_video(video: Path, stream: int | None = None) -> dict[str, Any]:
     """Size and codec of a video; `BadInput` unless the file is one whose first frames decode."""
-    with VideoReader(video) as reader:
+    with VideoReader(video, stream) as reader:
         shapes = [frame.rgb().shape for frame in islice(reader.frames(), 2)]
         codec, declared = reader.codec, reader.declared_frames
     if not shapes:

@@ -11,6 +11,12 @@ class InputSettings(Group):
     """What is accepted as input."""
 
     allow_truncated: bool = option(False, "use the decodable part of a damaged video", source="refused by default")
+    video_stream: int | None = option(
+        None,
+        "number of the video stream to read, among all streams of the file; none = the film, never a cover or preview",
+        source="method",
+        ge=0,
+    )
     time_convention: Literal[
         "auto", "pts", "average_rate", "average_rate+1", "container", "index", "index+1", "displayed"
     ] = option("auto", "what the time keys of the annotations mean; auto = fitted over all of them", source="method")

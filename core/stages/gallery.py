@@ -19,6 +19,7 @@ from core.report.tables import read_json
 from core.stage import StageResult, StageTask, stage_of
 from core.surface.ply import read_mesh
 from core.video.decode import VideoReader
+from core.video.table import FrameTable
 from core.viewpoint import choose_two
 
 MIN_SUPPORT = 0.5
@@ -56,7 +57,8 @@ def _write_frames(
     if not wanted and not shown:
         return
     last = max([*wanted, *shown])
-    with VideoReader(task.video) as reader:
+    stream = FrameTable.read(task.input("probe")).info.stream
+    with VideoReader(task.video, stream) as reader:
         for decoded in reader.frames():
             frame = wanted.get(decoded.index)
             quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]

@@ -14,7 +14,10 @@ def run(task: StageTask) -> StageResult:
     def on_frame(done: int, declared: int) -> None:
         task.report(done, max(done, declared), f"frame {done}")
 
-    table = probe_video(task.video, allow_truncated=task.settings.input.allow_truncated, on_frame=on_frame)
+    settings = task.settings.input
+    table = probe_video(
+        task.video, allow_truncated=settings.allow_truncated, stream=settings.video_stream, on_frame=on_frame
+    )
     table.write(task.out)
     info = table.info
     flags = []
@@ -22,6 +25,12 @@ def run(task: StageTask) -> StageResult:
         flags.append(Flag("truncated_video", "warning", where="; ".join(info.damage)))
     if info.repaired_times:
         flags.append(Flag("times_repaired", "warning", float(info.repaired_times), 0.0, "frames"))
+    if info.joined:
+        where = f"frame {', '.join(map(str, info.joined))}"
+        flags.append(Flag("recording_joined", "info", float(len(info.joined)), 0.0, where))
+    if info.streams:
+        where = f"stream {info.stream} of: {'; '.join(info.streams)}"
+        flags.append(Flag("video_stream_chosen", "info", float(len(info.streams)), 1.0, where))
     return StageResult(
         {
             "n_frames": info.n_frames,

@@ -7,6 +7,7 @@ After damage, frames are dropped up to the next keyframe, because they may refer
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -16,24 +17,24 @@ from typing import Any
 
 import av
 import numpy as np
+from av.codec.context import Flags
 from av.sidedata.sidedata import Type as SideDataType
-from av.stream import Disposition
-from av.video.frame import PictureType
 from numpy.typing import NDArray
 
 from core.errors import BadInput
-from core.files import require_file
+from core.video.clock import PresentationClock
+from core.video.container import MAX_FRAME_PIXELS, film_of, open_container, require_pixels
 from core.video.orientation import Orientation
-
-_FORMATS = (
-    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,flv,asf,ogg,mxf,ivf,h264,hevc,m4v,mjpeg,mpegvideo,"
-    "wav,mp3,aac,flac"
-)
-"""Containers that are opened. Playlists are not among them: they would make the decoder read other files.
-Audio formats are, so that they can be named."""
+from core.video.soundness import Loss, Sent, SoundFrames, shows_picture
 
 _DECLARING_FORMATS = frozenset({"mov", "matroska", "avi", "flv", "asf"})
 """Containers whose header states a duration; elsewhere it is estimated and says nothing about damage."""
+_INDEXED_FORMATS = frozenset({"mov", "avi"})
+"""Containers whose index lists every packet. (Its count stands in the header too, but that of AVI counts the frames
+which a recorder dropped, and that of MP4 those which an edit list cuts away.)"""
+
+_JOIN_MARK = 3
+"""A packet that is marked as cut off because another recording follows is one of the last so many before it."""
 
 
 @dataclass(frozen=True)
@@ -56,48 +57,51 @@ class DecodedFrame:
 class VideoReader:
     """A video opened for one pass. Use as a context manager; iterate `frames()` once.
 
+    Args:
+        path: the file.
+        stream: number of the stream to read; None takes the film (`core.video.container.choose_film`).
+        max_pixels: pictures with more are refused, from the header.
+
     Attributes:
+        streams: all video streams of the file.
+        stream_index: number of the one that is read.
         time_base: seconds per unit of `pts`.
         declared_rate: frames per second as the container states them; None when it does not.
         declared_frames: 0 when unknown.
         codec: name of the codec.
-        damage: what was found broken so far, empty while nothing was.
-        repaired_times: frames whose time was missing or not after the one before.
+        faults: what was found broken in the file so far, in words.
         orientation: known after the first frame.
     """
 
-    def __init__(self, path: Path) -> None:
-        require_file(path, "video")
+    def __init__(self, path: Path, stream: int | None = None, *, max_pixels: int = MAX_FRAME_PIXELS) -> None:
         self.name = path.name
+        self._max_pixels = max_pixels
+        self._container = open_container(path)
         try:
-            self._container = av.open(
-                str(path),
-                options={"format_whitelist": _FORMATS, "protocol_whitelist": "file"},
-                metadata_errors="replace",
-            )
-        except (av.error.FFmpegError, ValueError):
-            raise BadInput(
-                f"'{path.name}' is not a video that can be read (unknown format, or its index is missing)",
-                code="not_a_video",
-                where="video",
-            ) from None
-        try:
-            self._stream = self._video_stream()
+            self._stream, self.streams = film_of(self._container, path.name, stream)
+            codec = self._stream.codec_context
+            require_pixels(codec.width, codec.height, self.name, max_pixels)
         except BadInput:
             self._container.close()
             raise
         self._stream.thread_type = "NONE"
+        codec.flags |= Flags.copy_opaque  # a frame then carries the number of its packet
+        self.stream_index = int(self._stream.index)
         self.time_base = Fraction(self._stream.time_base)
         rate = self._stream.average_rate
         self.declared_rate = Fraction(rate) if rate else None
         self.declared_frames = int(self._stream.frames)
-        self.codec = str(self._stream.codec_context.name)
-        self.damage: list[str] = []
-        self.repaired_times = 0
+        self.codec = str(codec.name)
+        self.faults: list[str] = []
         self.orientation = Orientation()
+        self._clock = PresentationClock(self.time_base, self.declared_rate)
+        self._sound = SoundFrames()
         self._first_s: Fraction | None = None
         self._end_s = Fraction(0)
         self._video_end = 0
+        self._chunk = -1
+        self._format = set(self._container.format.name.split(","))
+        self._listed = len(self._stream.index_entries) if self._format & _INDEXED_FORMATS else 0
 
     def __enter__(self) -> VideoReader:
         return self
@@ -107,21 +111,25 @@ class VideoReader:
     ) -> None:
         self._container.close()
 
-    def _video_stream(self) -> Any:
-        streams = [s for s in self._container.streams.video if not s.disposition & Disposition.attached_pic]
-        usable = [s for s in streams if s.codec_context is not None and s.time_base]
-        if usable:
-            return usable[0]
-        if streams:
-            raise BadInput(f"'{self.name}' uses a video codec that is not known", code="unknown_codec", where="video")
-        if self._container.streams.audio:
-            raise BadInput(f"'{self.name}' holds only audio, no video", code="audio_only", where="video")
-        raise BadInput(f"'{self.name}' holds no video", code="not_a_video", where="video")
+    @property
+    def losses(self) -> list[Loss]:
+        """Frames that were left out so far, because they or one that they refer to are broken."""
+        return self._sound.losses
+
+    @property
+    def repaired_times(self) -> int:
+        """Frames so far whose time was missing or not after the one before."""
+        return self._clock.repaired
+
+    @property
+    def joined(self) -> list[int]:
+        """Frames so far at which the stamps start again: the file was joined from several recordings."""
+        return self._clock.joined
 
     def frames(self) -> Iterator[DecodedFrame]:
-        """Frames in presentation order; damage is noted in `damage` and its frames are left out."""
-        previous, shape = None, None
-        for index, frame in enumerate(self._sound()):
+        """Frames in presentation order; damaged ones are left out and noted in `losses` and `faults`."""
+        shape = None
+        for index, frame in enumerate(self._sound_frames()):
             if shape is None:
                 shape = (frame.width, frame.height)
                 self.orientation = self._read_orientation(frame)
@@ -131,45 +139,41 @@ class VideoReader:
                     code="frame_size_changes",
                     where="video",
                 )
-            previous = self._time_of(frame, previous)
-            self._video_end = previous + int(frame.duration or 0)
-            yield DecodedFrame(index, previous, bool(frame.key_frame), frame, self.orientation)
+            pts = self._clock.time(self._stamp(frame), int(frame.duration or 0))
+            self._video_end = pts + int(frame.duration or 0)
+            yield DecodedFrame(index, pts, bool(frame.key_frame), frame, self.orientation)
+        self._clock.finish()
 
-    def _sound(self) -> Iterator[Any]:
-        """Frames that depend on nothing broken.
+    def _stamp(self, frame: Any) -> int | None:
+        """Time of a frame as the file has it; None when it has none."""
+        if "avi" not in self._format:
+            return None if frame.pts is None else int(frame.pts)
+        # AVI only counts chunks in the order of decoding, which is as good as the time of the frame that comes out
+        # meanwhile. The last frames come out when no chunk is left.
+        self._chunk = int(frame.dts) if frame.dts is not None else self._chunk + 1
+        return self._chunk
 
-        After damage they begin again at a keyframe. Frames predicted from both sides come out before the
-        later one of the two, so they are held (a handful at most) until that one proves sound.
-        """
-        held: list[Any] = []
-        started = waiting = False
+    def _sound_frames(self) -> Iterator[Any]:
+        """Frames that depend on nothing broken."""
+        duration = 1 / ((self.declared_rate or Fraction(25)) * self.time_base)
         for frame in self._decode():
-            if frame is None:
-                yield from held
-            if frame is None or frame.is_corrupt:
-                # Recordings may begin in the middle of a group; what cannot decode there was never lost.
-                self._note("frames that do not decode" if started else "")
-                held, waiting = [], True
-            elif waiting and not frame.key_frame:
-                continue
-            elif frame.pict_type == PictureType.B:
-                held.append(frame)
-            else:
-                yield from held
-                yield frame
-                held, started, waiting = [], True, False
-        yield from held
+            if frame is not None:
+                require_pixels(frame.width, frame.height, self.name, self._max_pixels)
+                self._sound.came(frame, duration)
+            yield from self._sound.sound()
 
     def _decode(self) -> Iterator[Any]:
-        """Frames of the video stream as PyAV gives them; None in place of a packet that does not decode.
-
-        Before the None comes everything that was decoded before that packet.
-        """
+        """Frames of the stream as the decoder gives them; None where it is known that no more come for now."""
         decoder = self._stream.codec_context
-        for packet in self._packets():
-            if packet.is_corrupt:
-                self._note("a packet that is cut off")
+        number = -1
+        for number, (packet, whole) in enumerate(self._checked_packets()):
+            sent = Sent(number, packet.pts)
+            if not whole:
+                self._fault("a packet that is cut off")
             else:
+                if shows_picture(self.codec, packet):
+                    self._sound.sent(sent)
+                packet.opaque = number
                 try:
                     frames = packet.decode()
                 except av.error.FFmpegError:
@@ -179,7 +183,13 @@ class VideoReader:
                     continue
             yield from self._drained()
             decoder.flush_buffers()
+            self._sound.broke(sent)
             yield None
+        yield from self._drained()
+        self._sound.ended()
+        yield None
+        if number + 1 < self._listed:
+            self._fault(f"{self._listed - number - 1} of the {self._listed} frames that its index lists are missing")
 
     def _drained(self) -> list[Any]:
         """What the decoder still holds."""
@@ -188,8 +198,25 @@ class VideoReader:
         except av.error.FFmpegError:
             return []
 
+    def _checked_packets(self) -> Iterator[tuple[Any, bool]]:
+        """Packets, and whether each is whole.
+
+        Transport streams number their pieces. Where two recordings meet the numbers do not go on, and one of the last
+        packets of the first one is marked as cut off, which it is not.
+        """
+        waiting: deque[Any] = deque()
+        for packet in self._packets():
+            if waiting and _starts_again(packet, waiting[-1]):
+                yield from ((one, True) for one in waiting)
+                waiting.clear()
+            waiting.append(packet)
+            while waiting and (not waiting[0].is_corrupt or len(waiting) > _JOIN_MARK):
+                one = waiting.popleft()
+                yield one, not one.is_corrupt
+        yield from ((one, not one.is_corrupt) for one in waiting)
+
     def _packets(self) -> Iterator[Any]:
-        """Packets of the video stream; those of all streams count towards how far the file reaches."""
+        """Packets of the stream that hold something; those of all streams count towards how far the file reaches."""
         packets = self._container.demux()
         while True:
             try:
@@ -197,46 +224,28 @@ class VideoReader:
             except StopIteration:
                 return
             except av.error.FFmpegError:
-                self._note("data missing before the end")
-                yield self._end()
+                self._fault("data missing before the end")
                 return
             if packet.pts is not None and packet.time_base:
                 start = packet.pts * Fraction(packet.time_base)
                 self._first_s = start if self._first_s is None else min(self._first_s, start)
                 self._end_s = max(self._end_s, start + (packet.duration or 0) * Fraction(packet.time_base))
-            if packet.stream_index == self._stream.index:
+            # An empty packet would tell the decoder that nothing follows.
+            if packet.stream_index == self.stream_index and packet.size:
                 yield packet
 
-    def _end(self) -> Any:
-        """The empty packet that makes the decoder hand out what it still holds."""
-        packet = av.Packet()
-        packet.stream = self._stream
-        return packet
-
-    def _note(self, what: str) -> None:
-        if what and what not in self.damage:
-            self.damage.append(what)
+    def _fault(self, what: str) -> None:
+        if what not in self.faults:
+            self.faults.append(what)
 
     def _read_orientation(self, frame: Any) -> Orientation:
         matrix = frame.side_data.get(SideDataType.DISPLAYMATRIX)
         return Orientation.from_display_matrix(bytes(matrix)) if matrix is not None else Orientation()
 
-    def _time_of(self, frame: Any, previous: int | None) -> int:
-        """PTS of a frame; one that is missing or not after `previous` is replaced by the next possible time."""
-        if frame.pts is not None and (previous is None or frame.pts > previous):
-            return int(frame.pts)
-        self.repaired_times += 1
-        if previous is None:
-            return 0
-        if frame.pts is not None:
-            return previous + 1
-        rate = self.declared_rate or Fraction(25)
-        return previous + max(1, round(1 / (rate * self.time_base)))
-
     def missing_at_end_s(self) -> Fraction:
         """After the last frame: seconds that the header promises and the file does not hold; 0 when unknown."""
         declared = self._container.duration
-        if declared is None or not _DECLARING_FORMATS & set(self._container.format.name.split(",")):
+        if declared is None or not _DECLARING_FORMATS & self._format:
             return Fraction(0)
         length = self._end_s - (self._first_s or Fraction(0))
         return max(Fraction(0), Fraction(declared, av.time_base) - length)
@@ -244,6 +253,10 @@ class VideoReader:
     def end_pts(self) -> int:
         """After the last frame: its time plus its duration as far as the file knows it."""
         return self._video_end
+
+
+def _starts_again(packet: Any, before: Any) -> bool:
+    return packet.dts is not None and before.dts is not None and packet.dts < before.dts
 
 
 def iter_frames(path: Path) -> Iterator[tuple[int, int, float, NDArray[np.uint8]]]:

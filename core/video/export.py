@@ -51,7 +51,7 @@ def export_frames(
     """
     by_source = {frame.source_index: frame.index for frame in chosen}
     left = len(by_source)
-    with VideoReader(video) as reader:
+    with VideoReader(video, table.info.stream) as reader:
         for frame in reader.frames():
             index = by_source.get(frame.index)
             if index is not None:

@@ -3,40 +3,46 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
 
 from core.errors import BadInput
 from core.fingerprint import digest_of_file
 from core.video.decode import VideoReader
+from core.video.soundness import Loss
 from core.video.table import FrameRow, FrameTable, VideoInfo
 
 _END_TOLERANCE_S = Fraction(1, 2)
 """Headers round, and audio ends a little apart from video; less than this at the end is no damage."""
 _END_TOLERANCE_FRAMES = 3
 _RATE_TOLERANCE = Fraction(1, 100)
+_MAX_PLACES = 20
+"""Places of damage that are named one by one."""
 
 OnFrame = Callable[[int, int], None]
 """Called with (frames done, frames declared or 0)."""
 
 
-def probe_video(path: Path, *, allow_truncated: bool = False, on_frame: OnFrame | None = None) -> FrameTable:
+def probe_video(
+    path: Path, *, allow_truncated: bool = False, stream: int | None = None, on_frame: OnFrame | None = None
+) -> FrameTable:
     """Decode all frames in one pass of constant memory and return the frame table.
 
     Args:
         path: the video.
         allow_truncated: take the decodable part of a damaged video instead of refusing it.
+        stream: number of the video stream; None takes the film.
         on_frame: progress; may raise to stop.
 
     Raises:
         BadInput: `not_a_video`, `audio_only`, `unknown_codec`, `no_frames`, `single_frame`,
-            `truncated_video`, `frame_size_changes`, `unsupported_rotation`, or a file error of
-            `core.files.require_file`. Each message names cause and file.
+            `truncated_video`, `frame_size_changes`, `unsupported_rotation`, `too_many_pixels`, `no_such_stream`, or a
+            file error of `core.files.require_file`. Each message names cause and file.
     """
     rows: list[FrameRow] = []
     shape = (0, 0, 0)
-    with VideoReader(path) as reader:
+    with VideoReader(path, stream) as reader:
         for frame in reader.frames():
             rgb = frame.rgb()
             shape = rgb.shape
@@ -45,10 +51,10 @@ def probe_video(path: Path, *, allow_truncated: bool = False, on_frame: OnFrame 
             rows.append(FrameRow(frame.index, frame.pts, time_s, frame.keyframe, hashlib.sha256(rgb.data).hexdigest()))
             if on_frame:
                 on_frame(len(rows), reader.declared_frames)
-        damage = _damage(reader, len(rows))
+        damage = _damage(reader, rows)
         if damage and not allow_truncated:
             raise BadInput(
-                f"the video '{path.name}' is truncated or damaged: {', '.join(damage)}; "
+                f"the video '{path.name}' is truncated or damaged: {'; '.join(damage)}; "
                 f"{len(rows)} frames decode (--allow-truncated uses them)",
                 code="truncated_video",
                 where="video",
@@ -71,6 +77,9 @@ def probe_video(path: Path, *, allow_truncated: bool = False, on_frame: OnFrame 
             truncated=bool(damage),
             damage=tuple(damage),
             repaired_times=reader.repaired_times,
+            joined=tuple(reader.joined),
+            stream=reader.stream_index,
+            streams=tuple(map(str, reader.streams)) if len(reader.streams) > 1 else (),
         )
     return FrameTable(info, tuple(rows))
 
@@ -86,14 +95,23 @@ def _require_frames(path: Path, n_frames: int) -> None:
         )
 
 
-def _damage(reader: VideoReader, n_frames: int) -> list[str]:
-    """What is wrong with the file, in words; empty for a sound one."""
-    damage = list(reader.damage)
+def _damage(reader: VideoReader, rows: Sequence[FrameRow]) -> list[str]:
+    """What is wrong with the file, in words and with its place; empty for a sound one."""
+    damage = [*reader.faults, *(_lost(loss, rows) for loss in reader.losses[:_MAX_PLACES])]
+    further = reader.losses[_MAX_PLACES:]
+    if further:
+        damage.append(f"{sum(loss.frames for loss in further)} frames lost at {len(further)} further places")
     rate = reader.declared_rate or Fraction(25)
     missing = reader.missing_at_end_s()
-    if n_frames and missing > max(_END_TOLERANCE_S, _END_TOLERANCE_FRAMES / rate):
+    if rows and missing > max(_END_TOLERANCE_S, _END_TOLERANCE_FRAMES / rate):
         damage.append(f"{float(missing):.1f} s missing at the end")
     return damage
+
+
+def _lost(loss: Loss, rows: Sequence[FrameRow]) -> str:
+    last = loss.after - 1
+    frames = "1 frame" if loss.frames == 1 else f"{loss.frames} frames"
+    return f"{frames} lost after frame {last} at {rows[last].time_s:.3f} s ({', '.join(loss.causes)})"
 
 
 def _average_rate(reader: VideoReader, rows: list[FrameRow]) -> Fraction:
@@ -102,7 +120,8 @@ def _average_rate(reader: VideoReader, rows: list[FrameRow]) -> Fraction:
     Containers round their times, so their own figure is the better one for a constant rate; for a cut or
     repaired file it can be far off.
     """
-    measured = Fraction(len(rows) - 1) / ((rows[-1].pts - rows[0].pts) * reader.time_base)
+    lost = sum(loss.frames for loss in reader.losses)
+    measured = Fraction(len(rows) - 1 + lost) / ((rows[-1].pts - rows[0].pts) * reader.time_base)
     declared = reader.declared_rate
     if declared and abs(declared - measured) <= _RATE_TOLERANCE * measured:
         return declared

@@ -40,13 +40,20 @@ class VideoInfo:
     damage: tuple[str, ...] = ()
     repaired_times: int = 0
     """Frames whose time in the file was missing or not after the one before."""
+    joined: tuple[int, ...] = ()
+    """Frames at which the stamps of the file start again: it was joined from several recordings."""
+    stream: int | None = None
+    """Number of the video stream among all streams of the file; None in results made before it was known."""
+    streams: tuple[str, ...] = ()
+    """The video streams of the file in words, where there are several."""
 
     def to_dict(self) -> dict[str, Any]:
         """The form of `video.json`; rationals as ``num/den``."""
         row = dict(self.__dict__)
         for name in ("average_rate", "time_base"):
             row[name] = rational_text(row[name])
-        row["damage"] = list(self.damage)
+        for name in ("damage", "joined", "streams"):
+            row[name] = list(row[name])
         return row
 
     @classmethod
@@ -55,7 +62,8 @@ class VideoInfo:
         row = dict(row)
         for name in ("average_rate", "time_base"):
             row[name] = Fraction(row[name])
-        row["damage"] = tuple(row.get("damage", ()))
+        for name in ("damage", "joined", "streams"):
+            row[name] = tuple(row.get(name, ()))
         return cls(**row)
 
 

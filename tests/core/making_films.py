@@ -1,0 +1,50 @@
+"""Videos made and described by Debian's ffmpeg and ffprobe: an opinion that does not come from this project."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+SAMPLE = Path(__file__).parents[2] / "samples" / "turbine.mp4"
+SMALL = ("-vf", "scale=160:120", "-frames:v", "48")
+
+
+def ffmpeg(target: Path, *words: str | Path) -> Path:
+    """Run ffmpeg with `target` as its output."""
+    subprocess.run(["ffmpeg", "-v", "error", "-y", *map(str, words), str(target)], check=True, capture_output=True)
+    return target
+
+
+def film(target: Path, *words: str) -> Path:
+    """48 small frames of the sample, 12 frames/s."""
+    return ffmpeg(target, "-i", SAMPLE, *SMALL, *words)
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What ffprobe lists of one stream."""
+
+    pts: list[int]
+    index: int
+
+
+def ffprobe_frames(path: Path, stream: str = "v:0") -> Listed:
+    """ffprobe's frame list of a stream."""
+    words = ["ffprobe", "-v", "error", "-select_streams", stream, "-of", "json"]
+    words += ["-show_entries", "frame=pts,best_effort_timestamp:stream=index", str(path)]
+    said = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+    frames = [int(frame.get("pts", frame.get("best_effort_timestamp"))) for frame in said["frames"]]
+    return Listed(frames, int(said["streams"][0]["index"]))
+
+
+def ffmpeg_pixels(path: Path, stream: str, width: int, height: int) -> NDArray[np.uint8]:
+    """(n, h, w, 3) RGB of every frame of a stream as ffmpeg decodes it."""
+    words = ["ffmpeg", "-v", "error", "-i", str(path), "-map", f"0:{stream}", "-fps_mode", "passthrough"]
+    words += ["-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    data = subprocess.run(words, check=True, capture_output=True).stdout
+    return np.frombuffer(data, np.uint8).reshape(-1, height, width, 3)

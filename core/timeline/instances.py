@@ -21,6 +21,8 @@ F64 = NDArray[np.float64]
 
 LINK_RADII = 1.0
 """Two observations further apart than this many of their patches' radii show two defects."""
+SAME_TRACK = 2.0
+"""Observations that the detector followed as one may lie this many times as far apart."""
 OTHER_LABEL = 0.6
 """Of different labels, this share of it: detectors confuse labels, but neighbours with two labels are usually two."""
 OTHER_SIDE = 0.6
@@ -85,7 +87,7 @@ def _edges(observations: Sequence[Observation], places: F64, reach: F64) -> list
     """Pairs that may show one defect, by their distance in allowed distances."""
     tree = cKDTree(places)
     edges = []
-    for a, b in sorted(tree.query_pairs(LINK_RADII * float(reach.max()))):
+    for a, b in sorted(tree.query_pairs(SAME_TRACK * LINK_RADII * float(reach.max()))):
         allowed = _allowed(observations[a], observations[b], (reach[a] + reach[b]) / 2)
         ratio = float(np.linalg.norm(places[a] - places[b])) / allowed
         if ratio <= 1.0:
@@ -96,7 +98,7 @@ def _edges(observations: Sequence[Observation], places: F64, reach: F64) -> list
 def _allowed(a: Observation, b: Observation, reach: float) -> float:
     allowed = LINK_RADII * reach
     if a.track_id is not None and a.track_id == b.track_id:
-        return 2.0 * allowed
+        return SAME_TRACK * allowed
     if a.row.label != b.row.label:
         allowed *= OTHER_LABEL
     if float(a.normal @ b.normal) < 0.0:

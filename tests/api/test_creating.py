@@ -93,6 +93,11 @@ def test_a_key_has_one_effect(backend: Backend, client: TestClient) -> None:
     assert first.json()["id"] == again.json()["id"]
     other = post(client, SMALL + b"!", headers=key)
     assert (other.status_code, other.json()["code"]) == (422, "idempotency_key_reused")
+    for changed in ({"preset": "draft"}, {"options": {"matching.window": 9}}, {"label": "x"}, {"external_id": "x"}):
+        other = post(client, headers=key, parameters=json.dumps(changed))
+        assert (other.status_code, other.json()["code"]) == (422, "idempotency_key_reused"), changed
+    other = post(client, headers=key, annotations="{}")
+    assert (other.status_code, other.json()["code"]) == (422, "idempotency_key_reused")
     assert post(client, headers={"Idempotency-Key": "order-2"}).json()["id"] != first.json()["id"]
     assert len(rows(backend)) == 2
 

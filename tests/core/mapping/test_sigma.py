@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
-from core.mapping.sigma import place_sigma, pose_covariance
+from core.mapping.sigma import PoseCovariance, place_sigma, pose_covariance
 
 FOCAL = 400.0
 
@@ -53,3 +53,12 @@ def test_parts_of_a_place_add_up() -> None:
     points = np.random.default_rng(1).uniform((-2, -1.5, 3), (2, 1.5, 5), (60, 3))
     pose = pose_covariance(points, np.random.default_rng(2).normal(size=(60, 2)), FOCAL)
     assert place_sigma(place, pose, 20.0, "box", FOCAL, 0.0) > box
+
+
+def test_a_shaking_camera_moves_a_place_by_half_the_mean_square_of_its_shift() -> None:
+    place, spread = np.array([0.3, -0.2, 4.0]), np.array([0.01, 0.02, 0.005, 0.03, 0.01, 0.02])
+    motions = np.random.default_rng(0).normal(size=(200_000, 6)) * spread
+    shifts = np.cross(motions[:, :3], place) + motions[:, 3:]
+    expected = np.sqrt((shifts**2).sum(axis=1).mean() / 2)
+    pose = PoseCovariance(np.diag(spread**2))
+    assert place_sigma(place, pose, 0.0, "box", FOCAL, 0.0) == pytest.approx(expected, rel=0.01)

@@ -73,7 +73,20 @@ def test_a_lens_with_radial_terms_keeps_them(mapped, k1):
     assert trial.camera.params[3] == pytest.approx(k1, abs=0.02)
 
 
-@pytest.mark.parametrize(("k1", "k2", "number"), [(0.02, 0.022, 0), (0.05, 0.03, 1), (-0.06, 0.0, 1), (0.05, 0.05, 2)])
+@pytest.mark.parametrize(
+    ("k1", "k2", "number"),
+    [
+        (0.02, 0.022, 0),
+        (0.05, 0.03, 1),
+        (-0.06, 0.0, 1),
+        (0.05, 0.05, 2),
+        # Alone, the first has a sigma of 0.0052: 2.0 of them are enough for it, 3.0 of 0.012 for the second.
+        (0.0101, 0.0, 0),
+        (0.0108, 0.0, 1),
+        (0.0, 0.0355, 1),
+        (0.0, 0.0365, 2),
+    ],
+)
 def test_terms_are_judged_one_by_one(k1, k2, number):
     """Each has a sigma of 0.012; they are correlated by 0.9: 0.02 beside 0.022 says nothing."""
     camera = pycolmap.Camera(model="RADIAL_FISHEYE", width=320, height=240, params=[200.0, 160.0, 120.0, k1, k2])

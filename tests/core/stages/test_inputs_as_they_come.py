@@ -82,6 +82,14 @@ def test_keys_of_a_joined_recording_find_their_frames(tmp_path: Path):
     assert [round(row.time_s * 12) for row in table.rows] == list(range(96))
 
 
+def test_facts_and_files_name_the_same_part_of_the_picture(tmp_path: Path):
+    facts = stages(tmp_path, "kvz.mp4", roi__x0=0.1, roi__y0=0.2, roi__x1=0.9, roi__y1=0.75)
+    assert facts["frames"]["crop"] == [48, 72, 432, 270]
+    assert (facts["frames"]["source_width"], facts["frames"]["source_height"]) == (480, 360)
+    crop = json.loads((tmp_path / "results" / "frames" / "crop.json").read_text("utf-8"))
+    assert [crop[name] for name in ("x0", "y0", "x1", "y1")] == facts["frames"]["crop"]
+
+
 @pytest.mark.parametrize("video", ["d_x265_rand.mp4", "d_x264g12_rand.mp4"])
 def test_lost_frames_refuse_the_video_until_it_is_allowed_and_are_named_then(video: str, tmp_path: Path):
     with pytest.raises(BadInput, match=r"4 frames lost after frame 18 at 1\.500 s"):

@@ -72,6 +72,24 @@ def test_labels_and_tracks_have_their_say() -> None:
     assert len(group_observations(_placed(tracked))) <= len(group_observations(_placed(untracked)))
 
 
+def test_one_track_reaches_twice_as_far_and_over_labels() -> None:
+    """A place that no other rule joins: too far for its distance, and another label than its neighbours have."""
+    some = _placed(in_turn([A]))[:7]
+    reach = some[0].radius + (some[0].sigma or 0.0)
+
+    def at(k: int, shift: float, label: str, track: str | None) -> Observation:
+        row = replace(some[k].row, x=A[0] + shift * reach, y=A[1], z=A[2], label=label)
+        return replace(some[k], row=row, track_id=track, radius=some[0].radius, sigma=some[0].sigma)
+
+    def groups(track: str | None) -> list[list[int]]:
+        middle = [at(k, 0.75, "dent", None) for k in range(1, 6)]
+        return group_observations([at(0, 0.0, "dent", "7"), *middle, at(6, 1.55, "nick", track)])
+
+    assert [len(members) for members in groups("7")] == [7]
+    assert [len(members) for members in groups("8")] == [6, 1]
+    assert [len(members) for members in groups(None)] == [6, 1]
+
+
 def _placed(detections: Sequence[Detection]) -> list[Observation]:
     return place_on_surface(detections, scene(FRAMES, detections), times(), plates.no_matches, 0.4)
 
@@ -129,6 +147,15 @@ def test_visits_end_when_the_place_is_out_of_sight() -> None:
     assert visits([1, 2, 9, 10], [0, 1, 2, 3, 8, 9, 10], at) == [[1, 2], [9, 10]]
     assert visits([1, 4], [1, 4], at) == [[1, 4]], "0.2 s out of sight is nothing"
     assert visits([], [1], at) == []
+
+
+def test_a_visit_ends_after_three_frames_out_of_sight_that_last_half_a_second() -> None:
+    at = {i: 0.25 * i for i in range(20)}
+    assert visits([1, 5], [1, 5], at) == [[1], [5]], "frames 2, 3, 4: 0.5 s"
+    assert visits([1, 4], [1, 4], at) == [[1, 4]], "frames 2, 3 only"
+    assert visits([1, 6], [1, 2, 6], at) == [[1], [6]], "frames 3, 4, 5"
+    assert visits([1, 5], [1, 2, 5], at) == [[1, 5]], "frames 3, 4 only"
+    assert visits([1, 5], [1, 5], {i: 0.24 * i for i in range(20)}) == [[1, 5]], "0.48 s"
 
 
 def test_events_and_records_agree() -> None:

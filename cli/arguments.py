@@ -31,6 +31,7 @@ def parser() -> argparse.ArgumentParser:
     check = _add(commands, "check", "say what was understood of an annotation file")
     check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
     check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
+    _set(check, "set one option of the input (repeatable), e.g. input.time_convention=index to try a reading")
     _json(check)
     _questions(commands)
     options = _add(commands, "options", "list every option: meaning, unit, default, range, source")
@@ -65,14 +66,7 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON; see docs/annotations.md")
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)
-    run.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        dest="assignments",
-        metavar="NAME=VALUE",
-        help="set one option (repeatable); `bladeatlas options` lists them",
-    )
+    _set(run, "set one option (repeatable); `bladeatlas options` lists them")
     run.add_argument(
         "--parameters", type=Path, metavar="FILE", help="JSON {preset, options {name: value}, label, external_id}"
     )
@@ -109,6 +103,10 @@ def _add(
 
 def _preset(command: argparse.ArgumentParser, default: str | None = "default") -> None:
     command.add_argument("--preset", default=default, metavar="|".join(PRESET_NAMES), help="where the values start")
+
+
+def _set(command: argparse.ArgumentParser, text: str) -> None:
+    command.add_argument("--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help=text)
 
 
 def _json(command: argparse.ArgumentParser, text: str = "print JSON") -> None:

@@ -4,23 +4,40 @@ from __future__ import annotations
 
 import argparse
 import json
+from typing import Any
 
+from cli.parameters import parse_assignment
 from core.annotations.parse import load_annotations
 from core.annotations.placed import place
 from core.annotations.summary import AnnotationSummary, summarise
+from core.errors import BadInput
+from core.settings import make_settings
+from core.settings.groups import InputSettings
 from core.video.probe import probe_video
 
 
 def command(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
+    options = input_options(parsed.assignments)
     annotations = load_annotations(parsed.annotations)
-    placed = place(annotations, probe_video(parsed.video, allow_truncated=True)) if parsed.video else None
+    placed = None
+    if parsed.video:
+        placed = place(annotations, probe_video(parsed.video, allow_truncated=True), options.time_convention)
     summary = summarise(annotations, placed)
     if parsed.json:
         print(json.dumps({"schema_version": 1, **summary.to_dict()}, indent=1, allow_nan=False))
     else:
         print(f"{parsed.annotations.name}: {text(summary)}")
     return 0
+
+
+def input_options(assignments: list[str]) -> InputSettings:
+    """Options of the input as ``NAME=VALUE``; others are refused, because nothing here would read them."""
+    options = dict(parse_assignment(one) for one in assignments)
+    for name in options:
+        if not name.startswith("input."):
+            raise BadInput(f"'{name}' says nothing about the input; check takes only input.* options", where="--set")
+    return make_settings("default", options).input
 
 
 def text(summary: AnnotationSummary) -> str:
@@ -38,11 +55,30 @@ def text(summary: AnnotationSummary) -> str:
             f"  in the video: {summary.n_annotated_frames} frames with detections, "
             f"{summary.n_keys_outside_video} times outside"
         )
+    if summary.time_convention is not None:
+        lines += _times(summary.time_convention)
     lines.append(f"  read as: {summary.convention}")
     lines += [f"  warning: {warning}" for warning in summary.warnings]
     if summary.n_warnings > len(summary.warnings):
         lines.append(f"  and {summary.n_warnings - len(summary.warnings)} further warnings")
     return "\n".join(lines)
+
+
+def _times(read: dict[str, Any]) -> list[str]:
+    """How the time keys were read."""
+    told = ", as told" if read["forced"] else ""
+    lines = [
+        f"  time keys: {read['clock']}{told}, rounding {read['rounding']}, at most {read['max_miss_s']:.6f} s off; "
+        f"{read['frames_hit']} frames hit, {read['strays']} keys miss every frame",
+    ]
+    if read["first"]:
+        ends = [
+            f"{name} {json.dumps(hit['key'])} = frame {hit['source_index']} at {hit['time_s']:.4f} s"
+            for name, hit in (("first", read["first"]), ("last", read["last"]))
+        ]
+        lines.append(f"  keys: {', '.join(ends)}")
+    lines.append(f"  other readings that fit: {', '.join(read['rivals']) or 'none'}")
+    return lines
 
 
 def _counts(counts: dict[str, int]) -> str:

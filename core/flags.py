@@ -21,7 +21,7 @@ FLAG_CODES: Mapping[str, str] = {
     "recording_joined": "the stamps of the video start again: it was joined from recordings, and the times go on",
     "video_stream_chosen": "the file holds several video streams; the one named was read",
     "annotations_outside_video": "some time keys of the annotations lie outside the video; they have no frame",
-    "annotation_times_inexact": "some time keys are no time of any frame; the frame on screen was taken",
+    "annotation_times_inexact": "some time keys are no exact time of a frame; the nearest or the one shown was taken",
     "annotation_times_ambiguous": "the time keys fit several readings that mean other frames; the first was taken",
     "still_pixels_masked": "parts of the picture never move (burned-in text, dirt on the lens) and give no keypoints",
     "boxes_in_crop_frame": "boxes were scaled to the cropped image, as the thesis does; most places are wrong by it",

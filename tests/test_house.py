@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
-import sys
+from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import yaml
 
 from core.settings import PRESET_NAMES
 from store.settings import DeploymentSettings
+from tests import conftest
 
 ROOT = Path(__file__).parents[1]
 MAX_LINES = 400
@@ -57,18 +59,20 @@ def test_ci_runs_the_command_of_the_readme() -> None:
     assert "missing+=(ffmpeg)" in script, "without it every test of the tool fails there"
 
 
-@pytest.mark.parametrize(("required", "code", "said"), [("0", 0, "absent: ffmpeg (1)"), ("1", 1, "ffprobe not found")])
+@pytest.mark.parametrize(("required", "outcome"), [("0", pytest.skip.Exception), ("1", pytest.fail.Exception)])
 def test_an_absent_tool_is_a_counted_skip_and_in_ci_a_failure(
-    tmp_path: Path, required: str, code: int, said: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, required: str, outcome: type[BaseException]
 ) -> None:
-    test = tmp_path / "test_it.py"
-    test.write_text("import pytest\n@pytest.mark.tool('ffmpeg')\ndef test_it(): pass\n")
     (tmp_path / "ffmpeg").touch(mode=0o755)
-    command = [sys.executable, "-m", "pytest", "-p", "tests.conftest", "-c", "pyproject.toml", str(test)]
-    environment = {**os.environ, "PATH": str(tmp_path), "BLADEATLAS_REQUIRE_SERVICES": required}
-    run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
-    assert run.returncode == code, run.stdout
-    assert said in run.stdout
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("BLADEATLAS_REQUIRE_SERVICES", required)
+    skipped: Counter[str] = Counter()
+    marks = {"tool": [pytest.mark.tool("ffmpeg").mark]}
+    config = SimpleNamespace(stash={conftest._SKIPPED: skipped})
+    item: Any = SimpleNamespace(iter_markers=lambda kind: marks.get(kind, []), config=config)
+    with pytest.raises(outcome, match="ffprobe not found"):
+        conftest.pytest_runtest_setup(item)
+    assert ("absent: ffmpeg (1)" in conftest.skipped_line(skipped)) == (required == "0")
 
 
 @pytest.mark.parametrize("name", [".ci/run", "scripts/setup.sh", "scripts/lock.sh"])

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from core.annotations.checks import shown
+from core.annotations.clocks import Clock, ruler_of
 from core.annotations.convention import Fitted, fit_convention
 from core.annotations.model import Annotations, Box, Mask, Polygon
 from core.errors import BadInput
@@ -82,7 +84,7 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
             PlacedDetection(
                 id=d.id,
                 key=d.key,
-                time_s=float(d.time),
+                time_s=_seconds(d.time, frames[d.key], fitted.reading.clock, table),
                 label=d.label,
                 score=d.score,
                 box=d.box,
@@ -98,6 +100,19 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
         flags=flags,
         convention=fitted,
     )
+
+
+def _seconds(value: Fraction, frame: int | None, clock: Clock, table: FrameTable) -> float:
+    """Seconds from the first frame: what a key in such seconds says, else the time of its frame.
+
+    Outside the video no frame has a time; there the key's distance from the first frame is counted in usual frames.
+    """
+    if clock in ("pts", "displayed"):
+        return float(value)
+    if frame is not None:
+        return table.rows[frame].time_s
+    ruler = ruler_of(clock, table)
+    return float((value * ruler.unit - ruler.times[0]) / ruler.step / table.info.average_rate)
 
 
 def write_placed(placed: PlacedAnnotations, folder: Path) -> None:

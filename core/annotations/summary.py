@@ -7,13 +7,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from core.annotations.advice import advice
+from core.annotations.clocks import MEANINGS
 from core.annotations.model import Annotations
 from core.annotations.placed import PlacedAnnotations
 
-CONVENTION = (
-    "keys are seconds from the first frame; boxes are [left, upper, right, lower] and polygons [x, y], "
-    "both as shares of the whole source frame"
-)
+_BOXES = "boxes are [left, upper, right, lower] and polygons [x, y], both as shares of the whole source frame"
 _SHOWN = 10
 
 
@@ -35,6 +34,8 @@ class AnnotationSummary:
     convention: str
     n_keys_outside_video: int | None
     """None when no video was given."""
+    time_convention: dict[str, Any] | None
+    """How the time keys were read, as in `quality.json`; None when no video was given."""
     n_annotated_frames: int | None
     """Source frames with a detection; None when no video was given."""
     n_warnings: int
@@ -49,9 +50,10 @@ class AnnotationSummary:
 def summarise(annotations: Annotations, placed: PlacedAnnotations | None = None) -> AnnotationSummary:
     """Summarise checked annotations, with their frames when the video is known."""
     detections = annotations.detections
-    times = [entry.time for entry in annotations.entries]
+    first, last = _interval(annotations, placed)
     warnings = list(annotations.warnings)
     if placed is not None:
+        warnings = advice(placed.convention) + warnings
         warnings += [f"key {key!r} lies outside the video" for key in placed.keys_outside]
     return AnnotationSummary(
         n_keys=len(annotations.entries),
@@ -62,14 +64,24 @@ def summarise(annotations: Annotations, placed: PlacedAnnotations | None = None)
         masks_by_label=_counts(mask.label for entry in annotations.entries for mask in entry.masks),
         n_with_polygon=sum(d.polygon is not None for d in detections),
         n_with_track=sum(d.track_id is not None for d in detections),
-        first_time_s=float(min(times)) if times else None,
-        last_time_s=float(max(times)) if times else None,
-        convention=CONVENTION,
+        first_time_s=first,
+        last_time_s=last,
+        convention=f"keys are {MEANINGS['pts' if placed is None else placed.convention.reading.clock]}; {_BOXES}",
         n_keys_outside_video=None if placed is None else len(placed.keys_outside),
+        time_convention=None if placed is None else placed.convention.to_dict(),
         n_annotated_frames=None if placed is None else n_annotated_frames(placed),
         n_warnings=len(warnings),
         warnings=tuple(warnings[:_SHOWN]),
     )
+
+
+def _interval(annotations: Annotations, placed: PlacedAnnotations | None) -> tuple[float | None, float | None]:
+    """First and last time, s: of the keys where they are seconds from the first frame, else of their frames."""
+    if placed is not None and placed.convention.reading.clock not in ("pts", "displayed"):
+        first, last = placed.convention.first, placed.convention.last
+        return (first.time_s if first else None), (last.time_s if last else None)
+    times = [entry.time for entry in annotations.entries]
+    return (float(min(times)), float(max(times))) if times else (None, None)
 
 
 def n_annotated_frames(placed: PlacedAnnotations) -> int:

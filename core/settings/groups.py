@@ -18,7 +18,17 @@ class InputSettings(Group):
         ge=0,
     )
     time_convention: Literal[
-        "auto", "pts", "average_rate", "average_rate+1", "container", "index", "index+1", "displayed"
+        "auto",
+        "pts",
+        "declared_rate",
+        "average_rate",
+        "index",
+        "milliseconds",
+        "container",
+        "declared_rate+1",
+        "average_rate+1",
+        "index+1",
+        "displayed",
     ] = option("auto", "what the time keys of the annotations mean; auto = fitted over all of them", source="method")
 
 

@@ -80,6 +80,7 @@ def probe_video(
             joined=tuple(reader.joined),
             stream=reader.stream_index,
             streams=tuple(map(str, reader.streams)) if len(reader.streams) > 1 else (),
+            declared_rate=reader.declared_rate,
         )
     return FrameTable(info, tuple(rows))
 

@@ -46,6 +46,8 @@ class VideoInfo:
     """Number of the video stream among all streams of the file; None in results made before it was known."""
     streams: tuple[str, ...] = ()
     """The video streams of the file in words, where there are several."""
+    declared_rate: Fraction | None = None
+    """Frames per second as the file's header says, what OpenCV's ``CAP_PROP_FPS`` gives; None when it says nothing."""
 
     def to_dict(self) -> dict[str, Any]:
         """The form of `video.json`; rationals as ``num/den``."""
@@ -54,6 +56,7 @@ class VideoInfo:
             row[name] = rational_text(row[name])
         for name in ("damage", "joined", "streams"):
             row[name] = list(row[name])
+        row["declared_rate"] = None if self.declared_rate is None else rational_text(self.declared_rate)
         return row
 
     @classmethod
@@ -64,6 +67,8 @@ class VideoInfo:
             row[name] = Fraction(row[name])
         for name in ("damage", "joined", "streams"):
             row[name] = tuple(row.get(name, ()))
+        declared = row.get("declared_rate")
+        row["declared_rate"] = None if declared is None else Fraction(declared)
         return cls(**row)
 
 

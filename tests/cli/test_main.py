@@ -19,6 +19,7 @@ from core.settings import option_names
 ROOT = Path(__file__).parents[2]
 VIDEO = str(ROOT / "samples" / "turbine.mp4")
 ANNOTATIONS = str(ROOT / "samples" / "turbine.json")
+INPUTS = ROOT / "tests" / "data" / "inputs"
 
 
 def call(*words: str, expect: int, capsys: pytest.CaptureFixture[str]) -> str:
@@ -89,6 +90,37 @@ def test_check(capsys: pytest.CaptureFixture[str]) -> None:
     data = json.loads(call("check", ANNOTATIONS, "--json", expect=exits.DONE, capsys=capsys))
     assert data["n_detections"] == sum(data["detections_by_label"].values()) == 90
     assert data["n_annotated_frames"] is None
+    assert data["time_convention"] is None
+
+
+def test_check_says_how_the_times_were_read(capsys: pytest.CaptureFixture[str]) -> None:
+    text = call("check", ANNOTATIONS, VIDEO, expect=exits.DONE, capsys=capsys)
+    assert "time keys: pts, rounding nearest, at most 0.000033 s off; 96 frames hit, 0 keys miss every frame" in text
+    assert 'first "0.0000" = frame 0 at 0.0000 s, last "7.9167" = frame 95 at 7.9167 s' in text
+    assert "other readings that fit: none" in text
+    assert "warning" not in text
+
+
+def test_check_warns_of_times_that_can_be_read_in_two_ways(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("check", str(INPUTS / "frames_few.json"), str(INPUTS / "m96.avi"))
+    text = call(*words, expect=exits.DONE, capsys=capsys)
+    assert "warning: the time keys fit 2 readings" in text
+    assert "input.time_convention" in text
+    data = json.loads(call(*words, "--json", expect=exits.DONE, capsys=capsys))
+    assert (data["time_convention"]["clock"], data["time_convention"]["rivals"]) == ("pts", ["index"])
+    assert data["time_convention"]["last"] == {"key": "7", "source_index": 84, "time_s": 7.0}
+    told = call(*words, "--set", "input.time_convention=index", expect=exits.DONE, capsys=capsys)
+    assert "time keys: index, as told" in told
+    assert 'last "7" = frame 7 at 0.5833 s' in told
+    assert "times: 0.0000 to 0.5833 s" in told
+    assert "keys are frame numbers from 0" in told
+    assert "warning" not in told
+
+
+@pytest.mark.parametrize("assignment", ["input.time_convention=sidereal", "frames.count=3", "input.time_convention"])
+def test_check_refuses_what_says_nothing_about_the_input(assignment: str, capsys: pytest.CaptureFixture[str]) -> None:
+    line = call("check", ANNOTATIONS, "--set", assignment, expect=exits.BAD_INPUT, capsys=capsys)
+    assert assignment.split("=")[0] in line
 
 
 def test_options_list_every_setting(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.annotations.advice import advice
 from core.annotations.checks import parse_time
-from core.annotations.convention import Fitted, fit_convention, quantum
+from core.annotations.clocks import CLOCKS, MEANINGS
+from core.annotations.convention import Fitted, fit_convention
+from core.annotations.reading import quantum
 from core.errors import BadInput
+from core.settings.groups import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameRow, FrameTable, VideoInfo
 from tests.core.making_videos import make_video
 
+INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 EVEN = [40 * i for i in range(50)]
 UNEVEN = [0]
 for _i in range(1, 60):
@@ -29,6 +37,10 @@ def table_of(times_ms: list[int], first: int = 0) -> FrameTable:
     end = float(Fraction(times_ms[-1], 1000) + 1 / rate)
     info = VideoInfo(100, 100, 0, False, rate, Fraction(1, 1000), end, len(times_ms), "h264", "", False)
     return FrameTable(info, tuple(FrameRow(i, first + t, t / 1000, True, "") for i, t in enumerate(times_ms)))
+
+
+def replace_rate(table: FrameTable, declared: Fraction) -> FrameTable:
+    return replace(table, info=replace(table.info, declared_rate=declared))
 
 
 def fit(keys: list[str], table: FrameTable, forced: str = "auto") -> Fitted:
@@ -149,5 +161,109 @@ def test_any_video_gives_its_own_times_their_frames(steps: list[int], decimals: 
     assert frames_of(fit(keys, table)) == list(range(len(times)))
 
 
-def test_the_last_decimal() -> None:
+def test_the_last_digit() -> None:
     assert [quantum(key) for key in ("3", "0.25", "00:00:01.500")] == [1, Fraction(1, 100), Fraction(1, 1000)]
+    assert [quantum(key) for key in ("1e1", "1.50E-3 ", "2.", "00:00:07")] == [10, Fraction(1, 100_000), 1, 1]
+
+
+def test_a_tick_as_long_as_a_frame_excuses_nothing() -> None:
+    table = probe_video(INPUTS / "m96.avi")
+    assert table.info.time_base == 1 / table.info.average_rate
+    with pytest.raises(BadInput) as caught:
+        fit(list(json.loads((INPUTS / "k25.json").read_text())), table)
+    assert caught.value.code == "annotation_times_unclear"
+
+
+@pytest.mark.parametrize("off_ms", [3, 5])
+def test_a_tenth_of_the_shortest_frame_is_excused(off_ms: int) -> None:
+    keys = [f"{i / 25 + off_ms / 1000:.6f}" for i in range(40)]
+    assert bool(fit(keys, table_of(EVEN)).flags) == (off_ms > 4)
+
+
+def test_ticks_of_a_millisecond_do_not_hide_a_constant_rate() -> None:
+    rate = Fraction(30000, 1001)
+    table = table_of([floor(1000 * i / rate) for i in range(300)])
+    fitted = fit([f"{float(i / rate):.6f}" for i in range(300)], table)
+    assert (frames_of(fitted), fitted.flags) == (list(range(300)), ())
+
+
+def test_numbers_below_the_length_in_seconds_may_be_frames() -> None:
+    keys = list(json.loads((INPUTS / "frames_few.json").read_text()))
+    table = probe_video(INPUTS / "m96.avi")
+    fitted = fit(keys, table)
+    assert (fitted.reading.clock, fitted.rivals) == ("pts", ("index",))
+    assert [(flag.code, flag.severity) for flag in fitted.flags] == [("annotation_times_ambiguous", "warning")]
+    where = fitted.flags[0].where
+    for part in ("pts (seconds from the first frame)", "index (frame numbers from 0)", "input.time_convention"):
+        assert part in where
+    (said,) = advice(fitted)
+    assert "frame 84" in said
+    assert "frame 7)" in said
+    for forced, frames in (("pts", list(range(0, 96, 12))), ("index", list(range(8)))):
+        told = fit(keys, table, forced)
+        assert (frames_of(told), told.flags, advice(told)) == (frames, (), [])
+
+
+@pytest.mark.parametrize(
+    "keys", [["0.0", "1.0"], ["0.00", "0.52", "1.48"], ["00:00:01"], ["0"], ["1.2", "0.4", "1"], ["0.480000"]]
+)
+def test_seconds_at_constant_rate_raise_no_doubt(keys: list[str]) -> None:
+    fitted = fit(keys, table_of(EVEN))
+    assert frames_of(fitted) == [round(25 * parse_time(key)) for key in keys]
+    assert all(flag.severity == "info" for flag in fitted.flags)
+
+
+def test_one_key_at_the_end_may_come_from_a_player() -> None:
+    some = fit([f"{i / 25:.4f}" for i in (10, 20, 50)], table_of(EVEN))
+    assert (some.reading.clock, some.rivals) == ("average_rate+1", ("pts",))
+    assert [flag.severity for flag in some.flags] == ["warning"]
+    assert fit([f"{i / 25:.4f}" for i in range(1, 51)], table_of(EVEN)).flags == (), "all frames, and none twice"
+
+
+def test_frame_numbers_without_the_first_may_count_from_one() -> None:
+    fitted = fit(["3", "17", "40"], table_of(EVEN))
+    assert (frames_of(fitted), fitted.rivals) == ([3, 17, 40], ("index+1",))
+    assert [flag.severity for flag in fitted.flags] == ["warning"]
+
+
+def test_sparse_keys_of_a_video_with_gaps_are_doubtful_where_the_readings_part() -> None:
+    times = [40 * i for i in range(60) if i not in (20, 30)]
+    table = replace_rate(table_of(times), Fraction(25))
+    late, early = fit(["0.0000", "0.1600", "2.0000"], table), fit(["0.0000", "0.1600", "0.7200"], table)
+    assert (frames_of(late), late.rivals) == ([0, 4, 48], ("declared_rate",))
+    assert [flag.severity for flag in late.flags] == ["warning"]
+    assert (frames_of(early), early.flags) == ([0, 4, 18], ()), "before the gaps they agree"
+    assert frames_of(fit(["0.0000", "0.8000", "2.0000"], table)) == [0, 20, 50], "no frame was shown at 0.8 s"
+
+
+def test_milliseconds() -> None:
+    keys = list(json.loads((INPUTS / "ms.json").read_text()))
+    fitted = fit(keys, probe_video(INPUTS / "m96.avi"))
+    assert (fitted.reading.clock, frames_of(fitted), fitted.flags) == ("milliseconds", list(range(96)), ())
+
+
+def test_a_rate_that_is_not_declared_cannot_be_told() -> None:
+    with pytest.raises(BadInput, match="declares no frame rate"):
+        fit(["0.04"], table_of(EVEN), "declared_rate")
+
+
+@pytest.mark.parametrize(("way", "frames"), [("floor", list(range(12, 120, 7))), ("nearest", list(range(12, 120, 7)))])
+def test_two_decimals_of_a_fast_video(way: str, frames: list[int]) -> None:
+    rate = Fraction(60000, 1001)
+    table = table_of([round(1000 * i / rate) for i in range(120)])
+    fitted = fit([rounded(i / rate, 2, WAYS[way]) for i in frames], table)
+    assert frames_of(fitted) == frames
+
+
+def test_keys_too_coarse_for_the_frames_are_said() -> None:
+    rate = Fraction(30000, 1001)
+    table = table_of([round(1000 * i / rate) for i in range(600)])
+    fitted = fit(["00:00:07", "00:00:16"], table)
+    assert [(flag.code, flag.severity) for flag in fitted.flags][:1] == [("annotation_times_inexact", "warning")]
+    assert "too few decimals" in advice(fitted)[0]
+
+
+def test_every_clock_that_is_tried_can_be_told() -> None:
+    names = get_args(InputSettings.model_fields["time_convention"].annotation)
+    assert names == ("auto", *CLOCKS)
+    assert set(MEANINGS) == set(CLOCKS)

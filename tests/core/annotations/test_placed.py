@@ -72,6 +72,17 @@ def test_mostly_foreign_keys_mean_another_video():
     assert place(annotations, table_of([0, 100, 200, 300, 400], truncated=True)).detections[2].source_index is None
 
 
+@pytest.mark.parametrize(("keys", "convention"), [(["1", "3", "9"], "index"), (["100", "310", "9000"], "milliseconds")])
+def test_times_are_seconds_whatever_the_keys_are(keys: list[str], convention: str):
+    annotations = parse_annotations(entries(*keys))
+    placed = place(annotations, table_of([0, 100, 300, 310, 1000]), convention)
+    assert [(d.source_index, d.time_s) for d in placed.detections][:2] == [(1, 0.1), (3, 0.31)]
+    assert placed.detections[2].source_index is None
+    assert placed.detections[2].time_s == (9 / 4 if convention == "index" else 9.0)
+    summary = summarise(annotations, placed)
+    assert (summary.first_time_s, summary.last_time_s) == (0.1, 0.31)
+
+
 def test_files_give_back_what_was_placed(tmp_path: Path):
     value = {
         "0.1": {

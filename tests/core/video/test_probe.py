@@ -12,9 +12,10 @@ import pytest
 from core.errors import BadInput, Cancelled
 from core.video.decode import iter_frames
 from core.video.probe import probe_video
-from core.video.table import FrameTable
+from core.video.table import FrameTable, VideoInfo
 from tests.core.making_videos import cut_to, every_ms, make_video, picture, set_display_matrix
 
+INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 SAMPLE = Path(__file__).parents[3] / "samples" / "turbine.mp4"
 
 
@@ -44,6 +45,16 @@ def test_hashes_are_those_of_the_rgb_frames(tmp_path: Path):
         assert (index, pts, time_s) == (row.index, row.pts, row.time_s)
         assert hashlib.sha256(rgb.tobytes()).hexdigest() == row.sha256
         assert np.abs(rgb.astype(int) - picture(index)).mean() < 12
+
+
+def test_the_declared_rate_is_kept_beside_the_measured_one(tmp_path: Path):
+    table = probe_video(INPUTS / "m96_drop15.avi")
+    assert table.info.declared_rate == 12
+    assert float(table.info.average_rate) == pytest.approx(89 / (95 / 12))
+    table.write(tmp_path)
+    assert FrameTable.read(tmp_path).info == table.info
+    older = {name: value for name, value in table.info.to_dict().items() if name != "declared_rate"}
+    assert VideoInfo.from_dict(older).declared_rate is None
 
 
 @pytest.mark.parametrize("suffix", ["mp4", "mkv"])

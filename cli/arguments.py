@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from cli.parser import Parser
 from cli.remote_arguments import add_remote_commands
 from core.settings import PRESET_NAMES
 
@@ -15,11 +16,7 @@ _EXIT_CODES = (
 
 def parser() -> argparse.ArgumentParser:
     """The whole command; every subcommand sets `module`, whose `command(parsed)` runs it."""
-    top = argparse.ArgumentParser(
-        prog="bladeatlas",
-        description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
-        epilog=_EXIT_CODES,
-    )
+    top = _top()
     top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _run(commands)
@@ -38,6 +35,14 @@ def parser() -> argparse.ArgumentParser:
     _json(_add(commands, "version", "print the versions of this program and of the engines it uses"))
     add_remote_commands(commands, _EXIT_CODES)
     return top
+
+
+def _top() -> argparse.ArgumentParser:
+    return Parser(
+        prog="bladeatlas",
+        description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
+        epilog=_EXIT_CODES,
+    )
 
 
 def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

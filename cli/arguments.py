@@ -49,17 +49,17 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """What can be asked of a finished result."""
     point = _add(commands, "point", "say which point of the surface a pixel of a frame shows")
     point.add_argument("--frame", type=int, metavar="N", help="frame of the video, from 0")
-    point.add_argument("--time", type=float, metavar="SECONDS", help="or the frame nearest to this time")
+    point.add_argument("--time", type=float, metavar="SECONDS", help="or the used frame nearest to this time")
     point.add_argument(
         "--pixel", required=True, metavar="X,Y", help="pixels from the upper left corner of the whole frame"
     )
     views = _add(commands, "views", "list the frames that see a point of the surface, best first")
     views.add_argument("--point", metavar="X,Y,Z", help="in model units")
-    views.add_argument("--defect", type=int, metavar="ID", help="or the place of a defect")
+    views.add_argument("--defect", metavar="ID", help="or the place of a defect: D1, or 1")
     views.add_argument("--limit", type=int, default=20, metavar="N", help="frames listed, at most (20)")
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
-        one.add_argument("--model", type=int, default=0, metavar="N", help="of several models (0)")
+        one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")
         _json(one)
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
@@ -11,6 +9,8 @@ from typing import Annotated, Any, Literal
 
 from fastapi import Query, Request
 from fastapi.responses import Response, StreamingResponse
+
+from core.report.csv_form import csv_line
 
 CSV = "text/csv; charset=utf-8"
 _PIECE = 1 << 16
@@ -64,24 +64,9 @@ def _json(rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
 
 
 def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    """RFC 4180: CRLF, `.` decimals, empty for unknown."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow(columns)
+    yield csv_line(columns)
     for row in rows:
-        writer.writerow([_cell(row.get(name)) for name in columns])
-        yield text.getvalue()
-        text.seek(0)
-        text.truncate()
-    yield text.getvalue()
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return str(int(value))
-    return repr(value) if isinstance(value, float) else str(value)
+        yield csv_line([row.get(name) for name in columns])
 
 
 def _joined(texts: Iterator[str]) -> Iterator[bytes]:

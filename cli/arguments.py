@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from cli.parser import Parser
 from cli.remote_arguments import add_remote_commands
 from core.settings import PRESET_NAMES
 
@@ -15,11 +16,7 @@ _EXIT_CODES = (
 
 def parser() -> argparse.ArgumentParser:
     """The whole command; every subcommand sets `module`, whose `command(parsed)` runs it."""
-    top = argparse.ArgumentParser(
-        prog="bladeatlas",
-        description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
-        epilog=_EXIT_CODES,
-    )
+    top = _top()
     top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _run(commands)
@@ -42,21 +39,29 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _top() -> argparse.ArgumentParser:
+    return Parser(
+        prog="bladeatlas",
+        description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
+        epilog=_EXIT_CODES,
+    )
+
+
 def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """What can be asked of a finished result."""
     point = _add(commands, "point", "say which point of the surface a pixel of a frame shows")
     point.add_argument("--frame", type=int, metavar="N", help="frame of the video, from 0")
-    point.add_argument("--time", type=float, metavar="SECONDS", help="or the frame nearest to this time")
+    point.add_argument("--time", type=float, metavar="SECONDS", help="or the used frame nearest to this time")
     point.add_argument(
         "--pixel", required=True, metavar="X,Y", help="pixels from the upper left corner of the whole frame"
     )
     views = _add(commands, "views", "list the frames that see a point of the surface, best first")
     views.add_argument("--point", metavar="X,Y,Z", help="in model units")
-    views.add_argument("--defect", type=int, metavar="ID", help="or the place of a defect")
+    views.add_argument("--defect", metavar="ID", help="or the place of a defect: D1, or 1")
     views.add_argument("--limit", type=int, default=20, metavar="N", help="frames listed, at most (20)")
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
-        one.add_argument("--model", type=int, default=0, metavar="N", help="of several models (0)")
+        one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")
         _json(one)
 
 

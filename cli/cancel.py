@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from cli import remote
+from cli.terminal import say, say_json
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -12,7 +13,7 @@ def command(parsed: argparse.Namespace) -> int:
     with remote.client_of(parsed) as client:
         inspection = client.cancel(parsed.id)
     if parsed.json:
-        remote.print_json(inspection.raw)
+        say_json(inspection.raw)
     else:
-        print(remote.line(inspection))
+        say(remote.line(inspection))
     return 0

@@ -7,6 +7,7 @@ import argparse
 from cli import remote
 from cli.client.client import chosen
 from cli.client.transfers import no_progress
+from cli.terminal import say, say_json
 from core.errors import BadInput
 
 
@@ -20,7 +21,7 @@ def command(parsed: argparse.Namespace) -> int:
         for artifact in found:
             path = client.download(parsed.id, artifact, out, bars.show if bars is not None else no_progress)
             if parsed.json:
-                remote.print_json({"path": str(path), "size": artifact.size, "sha256": artifact.sha256})
+                say_json({"path": str(path), "size": artifact.size, "sha256": artifact.sha256})
     if not parsed.json:
-        print(f"{len(found)} files in {out}")
+        say(f"{len(found)} files in {out}")
     return 0

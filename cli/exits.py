@@ -24,6 +24,6 @@ def exit_code(error: BladeAtlasError) -> int:
 
 
 def one_line(error: BladeAtlasError) -> str:
-    """An expected error in one line: where, then what."""
-    message = " ".join(error.message.split())
+    """An expected error: where, then what. `cli.terminal.say` keeps it on one line."""
+    message = error.message.strip()
     return f"{error.where}: {message}" if error.where and error.where not in message else message

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import asdict
 from typing import Any
 
+from cli.terminal import say, say_json
 from store.keys import Keys, KeyView
 from store.opening import open_database
 from store.settings import DeploymentSettings
@@ -19,7 +19,10 @@ def command(parsed: argparse.Namespace) -> int:
         keys = Keys(database)
         if parsed.action == "create":
             view, key = keys.create(parsed.name)
-            print(json.dumps({**_record(view), "key": key}) if parsed.json else key)
+            if parsed.json:
+                say_json({**_record(view), "key": key})
+            else:
+                say(key)
         elif parsed.action == "revoke":
             keys.revoke(parsed.name)
         else:
@@ -33,7 +36,10 @@ def _list(found: list[KeyView], as_json: bool) -> None:
     for view in found:
         state = "revoked" if view.revoked_at else "valid"
         used = view.last_used_at.isoformat(timespec="seconds") if view.last_used_at else "never"
-        print(json.dumps(_record(view)) if as_json else f"{view.id}  {state}  last used {used}  {view.name}")
+        if as_json:
+            say_json(_record(view))
+        else:
+            say(f"{view.id}  {state}  last used {used}  {view.name}")
 
 
 def _record(view: KeyView) -> dict[str, Any]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 
 from cli import arguments
 from cli.exits import INTERNAL, INTERRUPTED, exit_code, one_line
+from cli.terminal import guarded_stdout, say
 from core.errors import BladeAtlasError, Cancelled
 
 
@@ -17,23 +19,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     parsed = arguments.parser().parse_args(argv)
     try:
         # The module of a subcommand is loaded only when it is called: `--help` loads no vision library.
-        return int(importlib.import_module(parsed.module).command(parsed))
+        with guarded_stdout():
+            return int(importlib.import_module(parsed.module).command(parsed))
     except Cancelled:
         return INTERRUPTED
     except KeyboardInterrupt:
-        print("bladeatlas: interrupted", file=sys.stderr)
+        say("bladeatlas: interrupted", error=True)
         return INTERRUPTED
     except BladeAtlasError as error:
-        print(f"bladeatlas: {one_line(error)}", file=sys.stderr)
+        say(f"bladeatlas: {one_line(error)}", error=True)
         return exit_code(error)
     except BrokenPipeError:
         # The reader of our output went away (`bladeatlas options | head`): nothing is wrong.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except Exception as error:  # the last frame: whatever it is becomes one line and exit code 1
+    except Exception as error:  # noqa: BLE001  (the last frame: whatever it is becomes one line and exit code 1)
         if parsed.traceback:
-            raise
-        print(f"bladeatlas: internal error: {type(error).__name__}: {error} (--traceback shows more)", file=sys.stderr)
+            say(*traceback.format_exc().splitlines(), error=True)
+        hint = "" if parsed.traceback else " (--traceback shows more)"
+        say(f"bladeatlas: internal error: {type(error).__name__}: {error}{hint}", error=True)
         return INTERNAL
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 
-from rich.console import Console
 from rich.table import Table
 
+from cli.terminal import console, say, say_json
 from core.errors import BadInput
 from core.settings import PRESET_NAMES
 from core.settings.describe import OptionInfo, describe_options
@@ -20,14 +20,13 @@ def command(parsed: argparse.Namespace) -> int:
     described = describe_options()
     if parsed.json:
         rows = [{**option.to_dict(), "value": option.value(parsed.preset)} for option in described]
-        print(json.dumps({"schema_version": 1, "preset": parsed.preset, "options": rows}, indent=1))
+        say_json({"schema_version": 1, "preset": parsed.preset, "options": rows}, indent=1)
         return 0
-    console = Console()
-    if console.is_terminal:
-        console.print(_table(described, parsed.preset))
+    drawn = console(error=False)
+    if drawn.is_terminal:
+        drawn.print(_table(described, parsed.preset))
     else:
-        for option in described:
-            print(plain_line(option, parsed.preset))
+        say(*(plain_line(option, parsed.preset) for option in described))
     return 0
 
 

@@ -49,7 +49,8 @@ def read_parameters(path: Path) -> Parameters:
     try:
         if path.stat().st_size > _MAX_PARAMETER_BYTES:
             raise BadInput("the parameter file is larger than 1 MiB", where=where)
-        data = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
+        # Editors on Windows begin a file with a byte order mark.
+        data = json.loads(path.read_text(encoding="utf-8-sig"), parse_constant=_refuse_constant)
     except OSError as error:
         raise BadInput(f"cannot read the parameter file: {error.strerror}", where=where) from None
     except (ValueError, RecursionError) as error:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
+import math
 
+from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.mapping.rows import REASONS
 
@@ -14,35 +15,40 @@ def command(parsed: argparse.Namespace) -> int:
     # Loaded here: questions need the ray caster, `--help` does not.
     from core.query import Result
 
-    result = Result(parsed.result, parsed.model)
-    if parsed.frame is None and parsed.time is None:
-        raise BadInput("say which frame: --frame N (of the video, from 0) or --time SECONDS", where="--frame")
-    frame = result.frame_at(parsed.time) if parsed.frame is None else parsed.frame
+    if (parsed.frame is None) == (parsed.time is None):
+        raise BadInput("say which frame: --frame N (of the video, from 0) or --time SECONDS, not both", where="--frame")
     x, y = numbers(parsed.pixel, 2, "--pixel")
+    result = Result(parsed.result, parsed.model or 0)
+    frame = result.frame_at(parsed.time) if parsed.frame is None else parsed.frame
     shown = result.point_at(frame, x, y)
     if parsed.json:
-        print(json.dumps({"schema_version": 1, "source_index": frame, **shown.to_dict()}, indent=1, allow_nan=False))
+        say_json({"schema_version": 1, "source_index": frame, **shown.to_dict()}, indent=1)
     elif shown.point is None:
-        print(f"frame {frame} shows nothing there: {REASONS[str(shown.reason)]}")
+        say(f"frame {frame} shows nothing there: {REASONS[str(shown.reason)]}")
     else:
-        print(f"frame {frame}, pixel {x:g}, {y:g}")
-        print(f"  point      {_three(shown.point)}  (model units)")
-        print(f"  normal     {_three(shown.normal or (0.0, 0.0, 0.0))}")
-        print(f"  distance   {shown.distance:.4f}, seen at {shown.incidence_deg:.0f} degrees")
-        print(f"  defect     {'none' if shown.defect_id is None else f'D{shown.defect_id}'}")
+        say(
+            f"frame {frame} at {shown.time_s:.3f} s, pixel {x:g}, {y:g}",
+            f"  point      {three(shown.point)}  (model units)",
+            f"  normal     {three(shown.normal or (0.0, 0.0, 0.0))}",
+            f"  distance   {shown.distance:.4f}, seen at {shown.incidence_deg:.0f} degrees",
+            f"  defect     {'none' if shown.defect_id is None else f'D{shown.defect_id}'}",
+        )
     return 0
 
 
 def numbers(text: str, count: int, where: str) -> list[float]:
-    """Comma-separated numbers; `BadInput` when they are not as many as asked for."""
+    """Comma-separated finite numbers; `BadInput` when they are not as many as asked for."""
     try:
         values = [float(part) for part in text.split(",")]
     except ValueError:
         values = []
     if len(values) != count:
         raise BadInput(f"'{text}' is not {count} numbers separated by commas", where=where)
+    if not all(math.isfinite(value) for value in values):
+        raise BadInput(f"'{text}' holds a number that is not finite", where=where)
     return values
 
 
-def _three(values: tuple[float, float, float]) -> str:
+def three(values: tuple[float, float, float]) -> str:
+    """A place for people."""
     return ", ".join(f"{value:.5f}" for value in values)

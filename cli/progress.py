@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections import Counter, defaultdict
@@ -15,6 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
+from cli.terminal import console, say_json, visible
 from worker.outcome import Event
 
 PLAIN_INTERVAL_S = 15.0
@@ -50,7 +50,7 @@ class JsonDisplay(Display):
 
     def line(self, record: dict[str, object]) -> None:
         """Print any record as one line."""
-        print(json.dumps(record, allow_nan=False), file=self._stream, flush=True)
+        say_json(record, stream=self._stream)
 
 
 class PlainDisplay(Display):
@@ -70,7 +70,8 @@ class PlainDisplay(Display):
         if text is None:
             return
         self._next = self._clock() + PLAIN_INTERVAL_S
-        print(f"[{event.fraction:4.0%}] {text}{_left(event)}", file=self._stream, flush=True)
+        line = visible(f"[{event.fraction:4.0%}] {text}{_left(event)}")
+        print(line, file=self._stream, flush=True)
 
 
 class LiveDisplay(Display):
@@ -100,9 +101,9 @@ class LiveDisplay(Display):
         """Move the bar; a finished stage or a retry gets its line."""
         text = self._stages.finished(event)
         if text is not None:
-            self._progress.console.print(escape(text), highlight=False)
-        description = _position(event) or "finishing"
-        self._progress.update(self._task, completed=event.fraction, description=escape(description + _left(event)))
+            self._progress.console.print(escape(visible(text)), highlight=False)
+        description = visible((_position(event) or "finishing") + _left(event))
+        self._progress.update(self._task, completed=event.fraction, description=escape(description))
 
 
 class _Stages:
@@ -143,8 +144,8 @@ def choose(as_json: bool) -> Display:
     """The display that fits: JSON lines on standard output, or a bar or lines on standard error."""
     if as_json:
         return JsonDisplay(sys.stdout)
-    console = Console(stderr=True)
-    return LiveDisplay(console) if console.is_terminal else PlainDisplay(sys.stderr)
+    terminal = console(error=True)
+    return LiveDisplay(terminal) if terminal.is_terminal else PlainDisplay(sys.stderr)
 
 
 def duration(seconds: float) -> str:

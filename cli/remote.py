@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
-from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, DownloadColumn, Progress, TaskID, TextColumn, TransferSpeedColumn
 
 from cli import exits
 from cli.client import Client, InspectionInfo
 from cli.progress import duration
+from cli.terminal import console, say, say_json, visible
 from core.errors import BadInput
 
 DEFAULT_SERVER = "http://127.0.0.1:8000"
@@ -52,11 +50,6 @@ def exit_code(inspection: InspectionInfo) -> int:
     return {"bad_input": exits.BAD_INPUT, "no_reconstruction": exits.NO_RECONSTRUCTION}.get(str(code), exits.INTERNAL)
 
 
-def print_json(record: Mapping[str, Any]) -> None:
-    """One JSON object on one line."""
-    print(json.dumps(dict(record), allow_nan=False), flush=True)
-
-
 def line(inspection: InspectionInfo) -> str:
     """An inspection in one line."""
     parts = [inspection.id, inspection.state, f"{inspection.progress:.0%}"]
@@ -77,12 +70,12 @@ def follow(client: Client, inspection: InspectionInfo, as_json: bool) -> Inspect
     with _bar() as bar:
         for last in client.watch(inspection.id):
             if as_json:
-                print_json(last.raw)
+                say_json(last.raw)
             elif bar is not None:
                 bar.show(last.stage or last.state, round(last.progress * 1000), 1000)
             elif f"{last.state} {last.stage}" != shown:
                 shown = f"{last.state} {last.stage}"
-                print(line(last), file=sys.stderr, flush=True)
+                say(line(last), error=True)
     return last
 
 
@@ -91,8 +84,8 @@ class Bars:
 
     def __init__(self, *, of_bytes: bool) -> None:
         columns = (DownloadColumn(), TransferSpeedColumn()) if of_bytes else (TextColumn("{task.percentage:>3.0f}%"),)
-        console = Console(stderr=True)
-        self._progress = Progress(BarColumn(30), *columns, TextColumn("{task.description}"), console=console)
+        terminal = console(error=True)
+        self._progress = Progress(BarColumn(30), *columns, TextColumn("{task.description}"), console=terminal)
         self._tasks: dict[str, TaskID] = {}
         self._one = not of_bytes
 
@@ -109,8 +102,8 @@ class Bars:
         """Move the bar of a file; for an inspection there is only one, whose text changes."""
         known = "" if self._one else name
         if known not in self._tasks:
-            self._tasks[known] = self._progress.add_task(escape(name), total=total)
-        self._progress.update(self._tasks[known], completed=done, total=total, description=escape(name))
+            self._tasks[known] = self._progress.add_task(escape(visible(name)), total=total)
+        self._progress.update(self._tasks[known], completed=done, total=total, description=escape(visible(name)))
 
 
 class Silence:

@@ -24,19 +24,15 @@ SHOWN_FILES = (
 )
 
 
-def text(outcome: Outcome) -> str:
+def lines(outcome: Outcome) -> list[str]:
     """The closing report of a run."""
     summary, quality = _read(outcome.out / "summary.json"), _read(outcome.out / "quality.json")
-    lines = [
+    found = [
         "",
         f"{outcome.state} in {duration(outcome.seconds)}"
         f" ({outcome.computed} tasks computed, {outcome.reused} already there)",
     ]
-    lines += _headline(summary)
-    lines += _funnel(quality)
-    lines += _verdict(quality)
-    lines += _files(outcome.out)
-    return "\n".join(lines)
+    return [*found, *_headline(summary), *_funnel(quality), *_verdict(quality), *_files(outcome.out)]
 
 
 def _headline(summary: dict[str, Any]) -> list[str]:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import Any
 
 from cli import exits, parameters, progress, report
+from cli.terminal import say
 from core.errors import BadInput
 from core.graph import STAGES
 from core.intake import check_input
@@ -41,11 +41,11 @@ def command(parsed: argparse.Namespace) -> int:
         labels = {"label": wanted.label, "external_id": wanted.external_id}
         display.line({"event": "result", "exit_code": code, **labels, **_record(outcome)})
     elif outcome.state in ("succeeded", "partial", "failed"):
-        print(report.text(outcome))
+        say(*report.lines(outcome))
     if code == exits.INTERRUPTED:
-        print("bladeatlas: interrupted; the same command goes on where it stopped", file=sys.stderr)
+        say("bladeatlas: interrupted; the same command goes on where it stopped", error=True)
     elif outcome.error is not None:
-        print(f"bladeatlas: {exits.one_line(outcome.error)}", file=sys.stderr)
+        say(f"bladeatlas: {exits.one_line(outcome.error)}", error=True)
     return code
 
 

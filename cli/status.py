@@ -6,6 +6,7 @@ import argparse
 from itertools import islice
 
 from cli import remote
+from cli.terminal import say, say_json
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -18,7 +19,7 @@ def command(parsed: argparse.Namespace) -> int:
             found = list(islice(client.list(limit=min(parsed.limit, 200), **filters), parsed.limit))
     for inspection in found:
         if parsed.json:
-            remote.print_json(inspection.raw)
+            say_json(inspection.raw)
         else:
-            print(remote.line(inspection))
+            say(remote.line(inspection))
     return 0

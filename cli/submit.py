@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import Any
 
 from cli import remote
 from cli.client.transfers import no_progress
 from cli.parameters import Parameters, parse_assignment, read_parameters
+from cli.terminal import say, say_json
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -19,14 +19,14 @@ def command(parsed: argparse.Namespace) -> int:
             on_bytes = bars.show if bars is not None else no_progress
             inspection = client.submit(parsed.video, parsed.annotations, parameters, on_bytes=on_bytes)
         if parsed.json:
-            remote.print_json(inspection.raw)
+            say_json(inspection.raw)
         else:
-            print(inspection.id, flush=True)
+            say(inspection.id)
         if not parsed.wait:
             return 0
         last = remote.follow(client, inspection, parsed.json)
     if not parsed.json:
-        print(remote.line(last), file=sys.stderr)
+        say(remote.line(last), error=True)
     return remote.exit_code(last)
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 
+from cli.terminal import say, say_json
 from core.versions import all_versions
 
 
@@ -12,8 +12,8 @@ def command(parsed: argparse.Namespace) -> int:
     """Print the versions of the program and its engines."""
     versions = all_versions()
     if parsed.json:
-        print(json.dumps({"schema_version": 1, "versions": versions}, indent=1))
+        say_json({"schema_version": 1, "versions": versions}, indent=1)
     else:
         for name, number in versions.items():
-            print(f"{name} {number}")
+            say(f"{name} {number}")
     return 0

@@ -3,34 +3,54 @@
 from __future__ import annotations
 
 import argparse
-import json
+import re
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from cli.point import numbers
+from cli.point import numbers, three
+from cli.terminal import say, say_json
 from core.errors import BadInput
+
+_DEFECT = re.compile(r"[dD]?([0-9]{1,9})")
 
 
 def command(parsed: argparse.Namespace) -> int:
     """List the frames that see a place, best first."""
     # Loaded here: questions need the ray caster, `--help` does not.
-    from core.query import Result, defect_place
+    from core.query import Result
 
     if (parsed.point is None) == (parsed.defect is None):
-        raise BadInput("say which place: --point X,Y,Z in model units, or --defect ID", where="--point")
-    place = (
-        defect_place(parsed.result, parsed.defect)
-        if parsed.point is None
-        else np.array(numbers(parsed.point, 3, "--point"))
-    )
-    seeing = Result(parsed.result, parsed.model).frames_seeing(place)
+        raise BadInput("say which place: --point X,Y,Z in model units, or --defect ID, not both", where="--point")
+    if parsed.limit < 1:
+        raise BadInput(f"{parsed.limit} frames; at least 1", where="--limit")
+    place, model = _place(parsed.result, parsed.point, parsed.defect, parsed.model)
+    result = Result(parsed.result, model)
+    on = result.on_surface(place)
+    seeing = result.frames_seeing(place)
     shown = seeing[: parsed.limit]
     if parsed.json:
         rows = [one.to_dict() for one in shown]
-        print(json.dumps({"schema_version": 1, "n_frames": len(seeing), "frames": rows}, indent=1, allow_nan=False))
+        say_json({"schema_version": 1, **on.to_dict(), "n_frames": len(seeing), "frames": rows}, indent=1)
         return 0
-    print(f"{len(seeing)} frames see it" + (f"; the best {len(shown)}:" if len(shown) < len(seeing) else ""))
+    if on.distance > on.spacing:
+        off = f"{on.distance:.5f} from the place asked for (the surface's points lie {on.spacing:.5f} apart)"
+        say(f"the nearest point of the surface is {three(on.point)}: {off}")
+    say(f"{len(seeing)} frames see it" + (f"; the best {len(shown)}:" if len(shown) < len(seeing) else ""))
     for one in shown:
         at = f"at {one.x:7.1f}, {one.y:7.1f} px"
-        print(f"  frame {one.source_index:6d}  {one.time_s:9.3f} s  {at}  quality {one.quality:.2f}")
+        say(f"  frame {one.source_index:6d}  {one.time_s:9.3f} s  {at}  quality {one.quality:.2f}")
     return 0
+
+
+def _place(folder: Path, point: str | None, defect: str | None, model: int | None) -> tuple[NDArray[np.float64], int]:
+    """The place that was asked for, and the model in whose frame it is."""
+    from core.query import defect_place
+
+    if point is not None:
+        return np.array(numbers(point, 3, "--point")), model or 0
+    found = _DEFECT.fullmatch(defect or "")
+    if found is None:
+        raise BadInput(f"'{defect}' is no defect: write D1 or 1", where="--defect")
+    return defect_place(folder, int(found[1]), model)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from cli import remote
+from cli.terminal import say
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -12,5 +13,5 @@ def command(parsed: argparse.Namespace) -> int:
     with remote.client_of(parsed) as client:
         last = remote.follow(client, client.get(parsed.id), parsed.json)
     if not parsed.json:
-        print(remote.line(last))
+        say(remote.line(last))
     return remote.exit_code(last)

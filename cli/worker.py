@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from cli.terminal import say
 from core.errors import BadInput
 from store import json_log
 from store.db import Database
@@ -42,5 +43,5 @@ def _check(settings: DeploymentSettings) -> int:
         alive = WorkerRegistry(database).alive(within_s=_LATE * settings.heartbeat_s)
     finally:
         database.close()
-    print(", ".join(alive) or "no worker of this host has reported itself")
+    say(", ".join(alive) or "no worker of this host has reported itself")
     return 0 if alive else 1

@@ -41,6 +41,9 @@ FLAG_CODES: Mapping[str, str] = {
     "focal_implausible": "the focal length found gives a field of view that no borescope has",
     "distortion_implausible": "the lens distortion found folds the image: radius does not grow with angle",
     "high_reprojection_error": "the model fits its keypoints badly",
+    "incomplete": "a stage after the model did not come to its end; what it and later ones make is missing",
+    "no_surface": "there is a model but no surface: nothing has a place on it",
+    "nothing_mapped": "the annotations have detections in the video, and none was placed on the surface",
 }
 """Every code that can appear, with its meaning. A code that is not here cannot be raised."""
 

@@ -104,7 +104,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("mesh", "mesh", weight=2),
         _spec("map_defects", "mapping", version=10, weight=0.6),
         _spec("timeline", "mapping", "timeline", version=6, weight=0.5),
-        _spec("gallery", "gallery", "mapping.method", version=2, reads_video=True, weight=1),
+        _spec("gallery", "gallery", "mapping.method", version=3, reads_video=True, weight=1),
     )
 }
 

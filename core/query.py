@@ -5,7 +5,6 @@ They need the published folder alone: sparse model, surface, frames, defects (`d
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -20,6 +19,7 @@ from core.mapping.scene import face_normals, oriented
 from core.mapping.support import open_model
 from core.mapping.surface import Surface
 from core.mapping.views import Views, views_of
+from core.report.csv_form import read_csv
 from core.roi import Crop
 from core.surface.ply import Mesh, read_mesh
 from core.surface.support import point_spacing
@@ -29,6 +29,8 @@ F64 = NDArray[np.float64]
 
 _SPACING_SAMPLE = 20_000
 TOLERANCE_SPACINGS = 5.0
+FAR_SHARE = 0.1
+"""A place farther from the surface than this share of its diagonal is a mistake: other units, or another model."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,8 @@ class Shown:
 
     frame_index: int | None
     reason: str | None = None
+    time_s: float | None = None
+    """Of the frame, which need not be the time that was asked for; None for one that took no part."""
     point: tuple[float, float, float] | None = None
     normal: tuple[float, float, float] | None = None
     distance: float | None = None
@@ -69,17 +73,36 @@ class Seeing:
         return asdict(self)
 
 
+@dataclass(frozen=True)
+class OnSurface:
+    """The point of the surface nearest to a place, model units."""
+
+    point: tuple[float, float, float]
+    face: int
+    """Of mapping/mesh_defects.ply."""
+    distance: float
+    """From the place."""
+    spacing: float
+    """Typical distance between neighbouring points of the surface: a shorter `distance` says nothing."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON form."""
+        return asdict(self)
+
+
 class Result:
     """One model of a published result, opened for questions."""
 
     def __init__(self, folder: Path, model: int = 0) -> None:
-        """Open a folder; `BadInput` says which of its files is missing."""
+        """Open a folder; `BadInput` says which of its files or models is missing."""
         root = folder if model == 0 else folder / "models" / str(model)
+        if model < 0 or (model and not root.is_dir()):
+            raise BadInput(f"there is no model {model}; there are {_models(folder)}", where="--model")
         for name in (folder / "frames.csv", folder / "summary.json", root / "sparse", root / "mapping"):
             if not name.exists():
                 raise BadInput(f"{folder.name} has no {name.relative_to(folder)}: is it a result?", where=name.name)
         self._frames = _frames(folder / "frames.csv")
-        self._crop = _crop(folder / "summary.json")
+        self._crop, self._n_frames, self._duration_s = _video(folder / "summary.json", self._frames)
         self.views: Views = views_of(open_model(root / "sparse"))
         try:
             self.mesh: Mesh = oriented(read_mesh(root / "mapping" / "mesh_defects.ply"), self.views)
@@ -89,10 +112,12 @@ class Result:
         self._normals = face_normals(self.mesh)
         step = max(1, len(self.mesh.vertices) // _SPACING_SAMPLE)
         # The vertices of a Poisson mesh lie about as far apart as the points that support it.
-        self._tolerance = TOLERANCE_SPACINGS * point_spacing(self.mesh.vertices[::step]) / np.sqrt(step)
+        self._spacing = float(point_spacing(self.mesh.vertices[::step]) / np.sqrt(step))
 
     def frame_at(self, time_s: float) -> int:
-        """Source frame of the run nearest to a time."""
+        """Source frame of the run nearest to a time; `BadInput` for a time outside the video."""
+        if not 0 <= time_s <= self._duration_s:
+            raise BadInput(f"{time_s:g} s is outside the video: 0 to {self._duration_s:g} s", where="--time")
         return int(min(self._frames.values(), key=lambda row: abs(row["time_s"] - time_s))["source_index"])
 
     def point_at(self, source_index: int, x: float, y: float) -> Shown:
@@ -102,27 +127,36 @@ class Result:
             source_index: decoded frame of the video, from 0.
             x: pixels from the left edge of the whole frame.
             y: from its upper edge.
+
+        Raises:
+            BadInput: the video has no such frame, or the frame no such pixel.
         """
+        if not 0 <= source_index < self._n_frames:
+            raise BadInput(f"the video has no frame {source_index}: 0 to {self._n_frames - 1}", where="--frame")
+        width, height = self._crop.source_width, self._crop.source_height
+        if not (0 <= x <= width and 0 <= y <= height):
+            raise BadInput(f"{x:g},{y:g} is outside the frame: 0,0 to {width},{height}", where="--pixel")
         row = next((row for row in self._frames.values() if row["source_index"] == source_index), None)
         if row is None:
             return Shown(None, "no_registered_view")
-        index = int(row["index"])
+        index, time_s = int(row["index"]), float(row["time_s"])
         view = self.views.row(index)
         if view is None:
-            return Shown(index, "frame_not_registered")
+            return Shown(index, "frame_not_registered", time_s)
         xy = np.array([[x - self._crop.x0, y - self._crop.y0]])
         if not (0 <= xy[0, 0] <= self._crop.width and 0 <= xy[0, 1] <= self._crop.height):
-            return Shown(index, "outside_roi")
+            return Shown(index, "outside_roi", time_s)
         ray = self.views.rays(xy, self.views.R[view])
         hits = self._surface.cast(self.views.centers[view][None], ray)
         if not hits.hit[0]:
-            return Shown(index, "off_surface")
+            return Shown(index, "off_surface", time_s)
         if hits.cosine[0] <= 0:
-            return Shown(index, "occluded")
+            return Shown(index, "occluded", time_s)
         point = self.views.centers[view] + hits.distance[0] * ray[0]
         face = int(hits.face[0])
         return Shown(
             frame_index=index,
+            time_s=time_s,
             point=_three(point),
             normal=_three(self._normals[face]),
             distance=float(hits.distance[0]),
@@ -131,13 +165,25 @@ class Result:
             defect_id=self._defect_of(face),
         )
 
-    def frames_seeing(self, point: F64) -> list[Seeing]:
-        """Registered frames that see the point of the surface nearest to a given one, best first."""
-        nearest, face = self._surface.nearest(np.asarray(point, np.float64)[None])
-        normal = self._normals[int(face[0])]
-        found = views_of_place(
-            nearest, normal, self.views, self._surface, float(self._tolerance), nearest[0], self._crop
-        )
+    def on_surface(self, place: F64) -> OnSurface:
+        """The point of the surface nearest to a (3,) place; `BadInput` when there is none or it is far away."""
+        if self._surface.empty:
+            raise BadInput("the result has no surface", where="mesh_defects.ply")
+        points, faces = self._surface.nearest(np.asarray(place, np.float64)[None])
+        distance = float(np.linalg.norm(points[0] - place))
+        if not distance <= FAR_SHARE * self.mesh.diagonal:
+            low, high = self.mesh.vertices.min(axis=0), self.mesh.vertices.max(axis=0)
+            ranges = ", ".join(f"{axis} {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high, strict=True))
+            at = ",".join(f"{value:g}" for value in place)
+            raise BadInput(f"{at} is {distance:.4g} away from the surface, which spans {ranges}", where="--point")
+        return OnSurface(_three(points[0]), int(faces[0]), distance, self._spacing)
+
+    def frames_seeing(self, place: F64) -> list[Seeing]:
+        """Registered frames that see the point of the surface nearest to a (3,) place, best first."""
+        on = self.on_surface(place)
+        point, tolerance = np.array(on.point), TOLERANCE_SPACINGS * self._spacing
+        normal = self._normals[on.face]
+        found = views_of_place(point[None], normal, self.views, self._surface, tolerance, point, self._crop)
         seeing = []
         for one in found:
             row = self._frames[one.frame_index]
@@ -156,16 +202,30 @@ class Result:
         return int(values[counts.argmax()]) if len(values) and counts.max() >= 2 else None
 
 
-def defect_place(folder: Path, defect: int) -> F64:
-    """(3,) centroid of a defect of a result; `BadInput` when there is no such defect."""
+def defect_place(folder: Path, defect: int, model: int | None = None) -> tuple[F64, int]:
+    """(3,) centroid of a defect of a result, and the model in whose frame it is.
+
+    Raises:
+        BadInput: there is no such defect, or it is not in `model`.
+    """
     try:
         records = json.loads((folder / "mapping" / "defects.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise BadInput(f"mapping/defects.json cannot be read: {error}", where="defects.json") from None
-    for record in records:
-        if record["id"] == defect:
-            return np.asarray(record["centroid"], np.float64)
-    raise BadInput(f"there is no defect {defect}; there are {len(records)}, from 0", where="--defect")
+    record = next((one for one in records if one["id"] == defect), None)
+    if record is None:
+        there = ", ".join(f"D{one['id']}" for one in records)
+        known = f"there are {there}" if records else "the result has none"
+        raise BadInput(f"there is no defect {defect}; {known}", where="--defect")
+    own = int(record.get("model") or 0)
+    if model is not None and model != own:
+        raise BadInput(f"D{defect} is in model {own}, not in model {model}", where="--model")
+    return np.asarray(record["centroid"], np.float64), own
+
+
+def _models(folder: Path) -> str:
+    further = sorted(int(path.name) for path in (folder / "models").glob("*") if path.name.isdecimal())
+    return ", ".join(str(number) for number in (0, *further))
 
 
 def _three(values: F64) -> tuple[float, float, float]:
@@ -174,18 +234,21 @@ def _three(values: F64) -> tuple[float, float, float]:
 
 
 def _frames(path: Path) -> dict[int, Mapping[str, Any]]:
-    with path.open(newline="", encoding="utf-8") as stream:
-        rows = [
-            {"index": int(r["index"]), "source_index": int(r["source_index"]), "time_s": float(r["time_s"])}
-            for r in csv.DictReader(stream)
-        ]
+    rows = [
+        {"index": int(r["index"]), "source_index": int(r["source_index"]), "time_s": float(r["time_s"])}
+        for r in read_csv(path)
+    ]
     return {int(row["index"]): row for row in rows}
 
 
-def _crop(path: Path) -> Crop:
-    summary = json.loads(path.read_text(encoding="utf-8"))
-    frame = summary.get("frame")
+def _video(path: Path, frames: Mapping[int, Mapping[str, Any]]) -> tuple[Crop, int, float]:
+    """The part of the frames that was used, frames in the video, its duration in s."""
+    frame = json.loads(path.read_text(encoding="utf-8")).get("frame")
     if not frame or not frame.get("crop"):
         raise BadInput("summary.json does not say which part of the frames was used", where="summary.json")
     x0, y0, x1, y1 = frame["crop"]
-    return Crop(x0, y0, x1, y1, frame["width"], frame["height"])
+    # Summaries did not always tell the video's length: what took part is known to be in it.
+    last = max((int(row["source_index"]) for row in frames.values()), default=-1)
+    end = max((float(row["time_s"]) for row in frames.values()), default=0.0)
+    n_frames, duration_s = frame.get("n_frames") or last + 1, frame.get("duration_s") or end
+    return Crop(x0, y0, x1, y1, frame["width"], frame["height"]), n_frames, duration_s

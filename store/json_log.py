@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
+from typing import Any
 
 import structlog
 from structlog.typing import EventDict, Processor
@@ -37,7 +38,7 @@ def configure(level: str = "INFO") -> None:
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(
             foreign_pre_chain=_SHARED,
-            processors=[_without_colours, structlog.processors.JSONRenderer()],
+            processors=[_without_colours, structlog.processors.JSONRenderer(), _printable],
         )
     )
     root = logging.getLogger()
@@ -52,6 +53,11 @@ def configure(level: str = "INFO") -> None:
         logger_factory=structlog.stdlib.LoggerFactory(),
         wrapper_class=structlog.stdlib.BoundLogger,
     )
+
+
+def _printable(_logger: object, _method: str, line: Any) -> str:
+    """JSON writes every control character out but DEL, in texts of strangers too."""
+    return str(line).replace("\x7f", "\\u007f")
 
 
 def _without_colours(_logger: object, _method: str, event: EventDict) -> EventDict:

@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from bench.accuracy.score import score_result
+from core.report.csv_form import read_csv
 from core.surface.ply import read_mesh
 from tests.core.making_videos import make_still_video
 from tests.signals import heed_interrupts
@@ -129,8 +130,7 @@ def without_clock(value: Any) -> Any:
 
 
 def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    return list(read_csv(path))
 
 
 def read(path: Path) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 import shutil
@@ -19,6 +18,7 @@ import httpx
 import pytest
 from redis import Redis
 
+from core.report.csv_form import read_csv
 from core.surface.ply import read_mesh
 from tests.conftest import service_url
 from tests.databases import database_url
@@ -94,8 +94,7 @@ def walk(folder: Path, port: str) -> None:
     assert len(mesh.faces) > 1000
     red = (mesh.colors[:, 0] > 200) & (mesh.colors[:, 1:] < 60).all(axis=1)
     assert red.any()
-    with (here / "timeline.csv").open(newline="") as stream:
-        events = list(csv.DictReader(stream))
+    events = list(read_csv(here / "timeline.csv"))
     assert events
     assert {"event_id", "defect_id", "label", "start_s", "end_s"} <= set(events[0])
 

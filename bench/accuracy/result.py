@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.errors import BadInput
+from core.report.csv_form import read_csv
 from core.surface.ply import Mesh, read_mesh
 
 F64 = NDArray[np.float64]
@@ -61,11 +61,10 @@ def load_result(folder: Path) -> Result:
 def _source_index_by_name(path: Path) -> dict[str, int]:
     if not path.is_file():
         raise BadInput("this is not a result folder: it has no frames.csv", where="frames.csv")
-    with path.open(newline="") as stream:
-        try:
-            return {f"{int(row['index']):04d}.jpg": int(row["source_index"]) for row in csv.DictReader(stream)}
-        except (KeyError, ValueError) as error:
-            raise BadInput(f"frames.csv is not in the expected form: {error!r}", where="frames.csv") from None
+    try:
+        return {f"{int(row['index']):04d}.jpg": int(row["source_index"]) for row in read_csv(path)}
+    except (KeyError, ValueError) as error:
+        raise BadInput(f"frames.csv is not in the expected form: {error!r}", where="frames.csv") from None
 
 
 def _load_model(number: int, root: Path, sources: dict[str, int]) -> ResultModel:

@@ -73,6 +73,11 @@ def as_list(value: Any, path: str) -> list[Any]:
     return value
 
 
+def as_list_or_null(value: Any, path: str) -> list[Any]:
+    """`value` if it is a list; null is a list without members, as tools write it where they found nothing."""
+    return [] if value is None else as_list(value, path)
+
+
 def as_label(value: Any, path: str) -> str:
     """`value` if it is a text with something in it that UTF-8 can hold."""
     if not isinstance(value, str) or not value.strip():

@@ -24,7 +24,8 @@ def parse_annotations(value: Any) -> Annotations:
 
     Args:
         value: object of time keys; each holds an object with optional lists `detections` (label, score,
-            bbox, optional track_id and polygon) and `masks` (label, polygon). Further members are ignored.
+            bbox, optional track_id and polygon) and `masks` (label, polygon), either of which may be null.
+            Further members are ignored.
 
     Returns:
         Entries and detection ids in input order. A detection without a polygon takes that of the mask with
@@ -41,8 +42,8 @@ def parse_annotations(value: Any) -> Annotations:
         time = checks.parse_time(key)
         path = checks.shown(key)
         members = checks.as_object(content, path)
-        masks = _masks(members.get("masks", []), f"{path}.masks", warnings)
-        boxes = checks.as_list(members.get("detections", []), f"{path}.detections")
+        masks = _masks(members.get("masks"), f"{path}.masks", warnings)
+        boxes = checks.as_list_or_null(members.get("detections"), f"{path}.detections")
         detections = []
         for i, item in enumerate(boxes):
             fields = _detection_fields(item, f"{path}.detections[{i}]", masks, warnings)
@@ -54,7 +55,7 @@ def parse_annotations(value: Any) -> Annotations:
 
 def _masks(value: Any, path: str, warnings: list[str]) -> tuple[Mask, ...]:
     masks = []
-    for i, item in enumerate(checks.as_list(value, path)):
+    for i, item in enumerate(checks.as_list_or_null(value, path)):
         here = f"{path}[{i}]"
         members = checks.as_object(item, here)
         label = checks.as_label(members.get("label"), f"{here}.label")

@@ -17,7 +17,13 @@ Plate = tuple[int, int, int, int]
 
 _DASH_PX = 7
 _INK: RGB = (40, 44, 48)
+_PLACE: RGB = (255, 120, 90)
 _MAX_LABEL = 28
+
+
+def frame_file(source_index: int) -> str:
+    """Name of the picture of a frame of the video."""
+    return f"frame_{source_index:06d}.jpg"
 
 
 @dataclass(frozen=True)
@@ -31,7 +37,7 @@ class FrameBoxes:
     @property
     def file_name(self) -> str:
         """Name of its picture."""
-        return f"frame_{self.source_index:06d}.jpg"
+        return frame_file(self.source_index)
 
     @property
     def best_score(self) -> float:
@@ -93,6 +99,17 @@ def draw_boxes(rgb: U8, rows: Sequence[DetectionRow], colors: Mapping[str, RGB])
         else:
             _dashed_rectangle(picture, (left, top, right, bottom), color, max(1, thickness - 1))
         _tag(picture, _tag_text(row), (left, top), color)
+    return picture
+
+
+def draw_place(rgb: U8, number: int, place: tuple[float, float]) -> U8:
+    """A copy of the frame with a cross where a defect lies that has no box on it; `place` is normalised."""
+    picture = np.ascontiguousarray(rgb).copy()
+    height, width = picture.shape[:2]
+    at = (int(place[0] * width), int(place[1] * height))
+    side = max(8, width // 40)
+    cv2.drawMarker(picture, at, _PLACE, cv2.MARKER_CROSS, side, max(1, width // 480), cv2.LINE_AA)
+    _tag(picture, f"D{number}", (at[0] + side // 2, at[1] - side // 2), _PLACE)
     return picture
 
 

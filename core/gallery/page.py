@@ -1,4 +1,4 @@
-"""The gallery page: both views of the surface, the table of events, and the frames with their boxes.
+"""The gallery page: both views of the surface, the table of defects, and the frames with their boxes.
 
 Labels and keys come from the annotation file and are not trusted: whatever enters the page passes through
 `_e`, and the page's own policy forbids any script but its own.
@@ -10,10 +10,10 @@ import base64
 import hashlib
 from collections.abc import Mapping, Sequence
 from html import escape
-from typing import Any
 
 from core.gallery.assets import SCRIPT, STYLE
-from core.gallery.boxes import FrameBoxes
+from core.gallery.boxes import FrameBoxes, frame_file
+from core.gallery.defects import DefectLine
 from core.gallery.evidence import Evidence
 from core.gallery.palette import RGB
 from core.mapping.rows import REASONS, DetectionRow
@@ -26,11 +26,16 @@ def _e(value: object) -> str:
     return escape(str(value), quote=True)
 
 
+def _label(text: str) -> str:
+    """A label that turns no text around it, whatever direction its characters ask for."""
+    return f"<bdi>{_e(text)}</bdi>"
+
+
 def gallery_page(
     frames: Sequence[FrameBoxes],
     n_frames: int,
     rows: Sequence[DetectionRow],
-    events: Sequence[Mapping[str, Any]],
+    defects: Sequence[DefectLine],
     colors: Mapping[str, RGB],
     evidence: Sequence[Evidence] = (),
 ) -> str:
@@ -40,13 +45,12 @@ def gallery_page(
         frames: those with a picture beside the page.
         n_frames: frames with detections, shown or not.
         rows: all detections.
-        events: rows of the timeline.
+        defects: rows of the table, in its order; a best frame has a picture beside the page.
         colors: by label, as drawn in the pictures.
         evidence: of the defects, each with a picture beside the page.
     """
     mapped = sum(row.outcome == "mapped" for row in rows)
-    n_defects = len({event["defect_id"] for event in events})
-    lead = f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {n_defects} defects"
+    lead = f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {len(defects)} defects"
     return "\n".join(
         [
             "<!doctype html>",
@@ -56,7 +60,7 @@ def gallery_page(
             f'<header><h1>Inspection gallery</h1><p class="lead">{_e(lead)}</p></header>',
             "<main>",
             _views(),
-            _events(events, frames),
+            _defects(defects),
             _evidence(evidence),
             _gallery(frames, n_frames, rows, colors),
             "</main>",
@@ -90,30 +94,33 @@ def _views() -> str:
     return f'<section aria-labelledby="s"><h2 id="s">Surface</h2><div class="views">{pictures}</div></section>'
 
 
-def _events(events: Sequence[Mapping[str, Any]], frames: Sequence[FrameBoxes]) -> str:
-    if not events:
+def _defects(lines: Sequence[DefectLine]) -> str:
+    if not lines:
         body = "<p>No defect was placed on the surface.</p>"
     else:
-        columns = "<th>Detections</th><th>Frames</th><th>Position (model units)</th><th>Radius</th>"
-        head = f'<tr><th class="t">Defect</th><th class="t">Label</th><th>From</th><th>To</th>{columns}'
+        columns = "<th>Visits</th><th>Detections</th><th>Seen in</th><th>Position (model units)</th>"
+        head = f'<tr><th class="t">Defect</th><th class="t">Label</th><th>Size</th><th>From</th><th>To</th>{columns}'
         head += '<th class="t">Best frame</th></tr>'
-        table = "".join(_event_row(event, frames) for event in events)
+        table = "".join(_defect_row(line) for line in lines)
         body = f'<div class="scroll"><table><thead>{head}</thead><tbody>{table}</tbody></table></div>'
+        body = f"<p>Largest first.</p>{body}"
     return f'<section aria-labelledby="e"><h2 id="e">Defects on the surface</h2>{body}</section>'
 
 
-def _event_row(event: Mapping[str, Any], frames: Sequence[FrameBoxes]) -> str:
-    number = int(event["defect_id"])
-    place = ", ".join(f"{event[axis]:.3f}" for axis in "xyz")
-    candidates = [(row.score or 0.0, frame) for frame in frames for row in frame.rows if row.defect_id == number]
-    best = max(candidates, key=lambda item: item[0], default=None)
-    link = f'<a href="{_e(best[1].file_name)}">{best[1].time_s:.2f} s</a>' if best else ""
+def _defect_row(line: DefectLine) -> str:
+    number, best = line.number, line.best
+    link = f'<a href="{_e(frame_file(best.source_index))}">{best.time_s:.2f} s</a>' if best else ""
     return (
         f'<tr><td class="t"><button type="button" data-defect="{number}" aria-pressed="false">D{number}</button></td>'
-        f'<td class="t">{_e(event["label"])}</td><td>{event["start_s"]:.2f} s</td><td>{event["end_s"]:.2f} s</td>'
-        f"<td>{int(event['n_detections'])}</td><td>{int(event['n_frames'])}</td><td>{_e(place)}</td>"
-        f'<td>{event["radius"]:.3f}</td><td class="t">{link}</td></tr>'
+        f'<td class="t">{_label(line.label)}</td><td>{_e(line.size_text)}</td>'
+        f"<td>{_seconds(line.start_s)}</td><td>{_seconds(line.end_s)}</td>"
+        f"<td>{line.visits}</td><td>{line.n_detections}</td><td>{line.n_frames} of {line.n_could_show} frames</td>"
+        f'<td>{_e(", ".join(f"{value:.3f}" for value in line.place))}</td><td class="t">{link}</td></tr>'
     )
+
+
+def _seconds(value: float | None) -> str:
+    return "" if value is None else f"{value:.2f} s"
 
 
 def _evidence(evidence: Sequence[Evidence]) -> str:
@@ -186,7 +193,7 @@ def _item(row: DetectionRow, color: RGB) -> str:
     swatch = f'<span class="dot" style="background:rgb({color[0]},{color[1]},{color[2]})"></span>'
     return (
         f'<li data-label="{_e(row.label)}" data-outcome="{_e(row.outcome)}" data-defect="{_e(defect)}">{swatch}'
-        f"<span>{_e(row.label)}{score}</span>"
+        f"<span>{_label(row.label)}{score}</span>"
         f'<span class="state {_e(row.outcome)}" title="{_e(hint)}">{_e(state)}</span></li>'
     )
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 from core.checks.parallax import cases_parallax
 from core.flags import Flag, error_codes
 from core.report.funnel import funnel, losses, support_counts
+from core.report.missing import missing_parts
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
@@ -22,11 +23,11 @@ _SEVERITY_RANK = {"error": 0, "warning": 1, "info": 2}
 
 
 def collect_flags(record: RunRecord) -> list[Flag]:
-    """All flags that stages raised (facts `flags` and `checks`), those of the search and of the settings.
+    """All flags that stages raised (facts `flags` and `checks`), of the search, of the settings, of what is missing.
 
     Worst first, none twice.
     """
-    flags = _settings_flags(record)
+    flags = [*_settings_flags(record), *missing_parts(record)]
     still = cases_parallax([task.facts for task in record.tasks if task.stage in ("coarse", "refine") and task.facts])
     if still is not None:
         flags.append(still)

@@ -41,9 +41,15 @@ def build_summary(
 
 
 def _frame(record: RunRecord) -> dict[str, Any]:
-    """Size of the video's frames and the part of them that was used, px: x0, y0, x1, y1 (half open)."""
-    facts = record.facts("frames")
-    return {"width": facts.get("source_width"), "height": facts.get("source_height"), "crop": facts.get("crop")}
+    """The video: size of its frames, the part of them that was used, px: x0, y0, x1, y1 (half open), and its length."""
+    facts, video = record.facts("frames"), record.facts("probe")
+    return {
+        "width": facts.get("source_width"),
+        "height": facts.get("source_height"),
+        "crop": facts.get("crop"),
+        "n_frames": video.get("n_frames"),
+        "duration_s": video.get("duration_s"),
+    }
 
 
 def run_fingerprint(record: RunRecord) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+from core.report.csv_form import csv_line
 
 SCHEMA_VERSION = 1
 
@@ -24,29 +25,19 @@ def read_json(path: Path) -> Any:
 
 
 def write_csv(path: Path, columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write rows as RFC 4180: a header, CRLF line ends, `.` decimals, empty for unknown.
+    """Write a header and rows in the form of `core.report.csv_form`.
 
     Raises:
         ValueError: a row lacks a column or has a number that is not finite.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\r\n")
-        writer.writerow(columns)
+        stream.write(csv_line(columns))
         for row in rows:
             missing = [name for name in columns if name not in row]
             if missing:
                 raise ValueError(f"{path.name}: row without {', '.join(missing)}")
-            writer.writerow([_cell(row[name], path.name) for name in columns])
-
-
-def _cell(value: Any, where: str) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return str(int(value))
-    if isinstance(value, float):
-        if value != value or value in (float("inf"), float("-inf")):
-            raise ValueError(f"{where}: a number is not finite")
-        return repr(value)
-    return str(value)
+            try:
+                stream.write(csv_line([row[name] for name in columns]))
+            except ValueError as error:
+                raise ValueError(f"{path.name}: {error}") from None

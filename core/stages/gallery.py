@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 
 from core.errors import DiskFull
-from core.gallery.boxes import FrameBoxes, choose_frames, draw_boxes, draw_defect_numbers, group_by_frame
+from core.gallery.boxes import FrameBoxes, choose_frames, draw_boxes, draw_defect_numbers, draw_place, group_by_frame
+from core.gallery.defects import DefectLine, defect_lines
 from core.gallery.evidence import Evidence, draw_evidence, evidence_of
 from core.gallery.page import gallery_page
-from core.gallery.palette import label_colors
+from core.gallery.palette import RGB, label_colors
 from core.mapping.rows import DetectionRow
 from core.render import Renderer
 from core.report.models import join_detections, join_lists
@@ -27,7 +29,7 @@ MIN_SUPPORT = 0.5
 
 
 def run(task: StageTask) -> StageResult:
-    """Write the page, one picture per chosen frame and two renderings. Facts: n_images, n_frames."""
+    """Write the page, a picture per chosen frame and per best frame, two renderings. Facts: n_images, n_frames."""
     settings = task.settings.gallery
     timelines = [folder for key, folder in sorted(task.inputs.items()) if stage_of(key) == "timeline"]
     rows = [DetectionRow(**row) for row in join_detections([read_json(f / "detections.json") for f in timelines])]
@@ -35,36 +37,71 @@ def run(task: StageTask) -> StageResult:
     frames = group_by_frame(rows, source)
     chosen = choose_frames(frames, settings.max_frames)
     colors = label_colors([row.label for row in rows])
-    defects = join_lists([read_json(folder / "defects.json") for folder in timelines])
-    evidence = evidence_of(defects, rows) if task.settings.mapping.method == "surface" else []
-    _write_frames(task, chosen, colors, evidence)
-    _write_views(task)
+    records = join_lists([read_json(folder / "defects.json") for folder in timelines])
     events = join_lists([read_json(folder / "timeline.json") for folder in timelines])
-    page = gallery_page(chosen, len(frames), rows, events, colors, evidence)
+    used = {row["index"]: row for row in read_json(task.input("frames") / "frames.json")}
+    defects = defect_lines(records, events, used)
+    rank = {line.number: position for position, line in enumerate(defects)}
+    records = sorted(records, key=lambda record: rank[record["id"]])
+    evidence = evidence_of(records, rows) if task.settings.mapping.method == "surface" else []
+    pictures = _pictures(chosen, frames, defects)
+    evidence_at: dict[int, list[Evidence]] = {}
+    for one in evidence:
+        evidence_at.setdefault(used[one.frame_index]["source_index"], []).append(one)
+    _write_frames(task, pictures, colors, evidence_at)
+    _write_views(task)
+    page = gallery_page(chosen, len(frames), rows, defects, colors, evidence)
     (task.out / "index.html").write_text(page, encoding="utf-8", newline="\n")
     return StageResult({"n_images": len(chosen), "n_frames": len(frames)})
 
 
+@dataclass(frozen=True)
+class _Picture:
+    """What is drawn on one frame."""
+
+    boxes: FrameBoxes
+    marks: tuple[tuple[int, tuple[float, float]], ...]
+    """Defects that it shows best without a box of theirs, with their normalised places."""
+
+
+def _pictures(
+    chosen: Sequence[FrameBoxes], frames: Sequence[FrameBoxes], defects: Sequence[DefectLine]
+) -> dict[int, _Picture]:
+    """The chosen frames and the best frame of every defect, by source frame."""
+    boxes = {frame.source_index: frame for frame in chosen}
+    known = {frame.source_index: frame for frame in frames}
+    marks: dict[int, list[tuple[int, tuple[float, float]]]] = {}
+    for line in defects:
+        if line.best is None:
+            continue
+        at = line.best.source_index
+        frame = boxes.setdefault(at, known.get(at) or FrameBoxes(at, line.best.time_s, ()))
+        if line.best.place is not None and all(row.defect_id != line.number for row in frame.rows):
+            marks.setdefault(at, []).append((line.number, line.best.place))
+    return {at: _Picture(frame, tuple(marks.get(at, ()))) for at, frame in boxes.items()}
+
+
 def _write_frames(
-    task: StageTask, chosen: list[FrameBoxes], colors: dict[str, tuple[int, int, int]], evidence: list[Evidence]
+    task: StageTask,
+    pictures: Mapping[int, _Picture],
+    colors: Mapping[str, RGB],
+    evidence: Mapping[int, Sequence[Evidence]],
 ) -> None:
-    """Decode the video once, in order, and write the chosen frames with their boxes, and the evidence of defects."""
-    wanted = {frame.source_index: frame for frame in chosen}
-    source = {row["index"]: row["source_index"] for row in read_json(task.input("frames") / "frames.json")}
-    shown: dict[int, list[Evidence]] = {}
-    for one in evidence:
-        shown.setdefault(source[one.frame_index], []).append(one)
-    if not wanted and not shown:
+    """Decode the video once, in order, and write the frames with their boxes, and the evidence of defects."""
+    if not pictures and not evidence:
         return
-    last = max([*wanted, *shown])
+    last = max([*pictures, *evidence])
+    quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
     stream = FrameTable.read(task.input("probe")).info.stream
     with VideoReader(task.video, stream) as reader:
         for decoded in reader.frames():
-            frame = wanted.get(decoded.index)
-            quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
-            if frame is not None:
-                _write_image(task, frame.file_name, draw_boxes(decoded.rgb(), frame.rows, colors), quality)
-            for one in shown.get(decoded.index, ()):
+            picture = pictures.get(decoded.index)
+            if picture is not None:
+                drawn = draw_boxes(decoded.rgb(), picture.boxes.rows, colors)
+                for number, place in picture.marks:
+                    drawn = draw_place(drawn, number, place)
+                _write_image(task, picture.boxes.file_name, drawn, quality)
+            for one in evidence.get(decoded.index, ()):
                 _write_image(task, one.file_name, draw_evidence(decoded.rgb(), one), quality)
             task.report(0.5 * decoded.index, last + 1, f"frame {decoded.index} of {last}")
             if decoded.index >= last:

@@ -68,6 +68,16 @@ def test_a_form_with_the_sample_starts_an_inspection(backend: Backend, client: T
     assert leftovers(backend) == []
 
 
+def test_what_tools_on_other_systems_write_is_read(backend: Backend, client: TestClient) -> None:
+    """Parameters with a byte order mark, and null where there are no detections."""
+    inputs = Path(__file__).parents[1] / "data" / "inputs"
+    marked, empty = (inputs / "param_bom.json").read_bytes(), (inputs / "nulldet.json").read_bytes()
+    answer = post(client, VIDEO.read_bytes(), parameters=marked, annotations=empty)
+    assert answer.status_code == 202, answer.text
+    assert answer.json()["parameters"]["preset"] == "draft"
+    assert backend.woken == [answer.json()["id"]]
+
+
 def test_finished_uploads_start_an_inspection(backend: Backend, client: TestClient) -> None:
     video = VIDEO.read_bytes()
     url = begin(client, len(video))

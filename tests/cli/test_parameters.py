@@ -115,6 +115,12 @@ def test_refused_parameter_files(tmp_path: Path, text: str, part: str) -> None:
         parameters.read_parameters(file).settings()
 
 
+def test_a_parameter_file_may_begin_with_a_byte_order_mark() -> None:
+    file = Path(__file__).parents[1] / "data" / "inputs" / "param_bom.json"
+    assert file.read_bytes().startswith(b"\xef\xbb\xbf")
+    assert parameters.read_parameters(file).preset == "draft"
+
+
 def test_missing_parameter_file(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="No such file"):
         parameters.read_parameters(tmp_path / "none.json")

@@ -95,6 +95,14 @@ def test_submit_watch_and_download_the_sample(
 
 
 @pytest.mark.usefixtures("unprobed")
+def test_a_label_of_somebody_else_is_one_line_of_a_list(call: Callable[..., tuple[int, str]], video: Path) -> None:
+    label = "two\nlines \x1b[2J\u202e"
+    one = call("submit", str(video), "--label", label)[1].strip()
+    assert call("status")[1] == f"{one}  queued  0%  split  two\\nlines \\x1b[2J\\u202e\n"
+    assert json.loads(call("status", "--json")[1])["label"] == label
+
+
+@pytest.mark.usefixtures("unprobed")
 def test_cancel_and_the_exit_code_of_what_was_cancelled(
     backend: Backend, call: Callable[..., tuple[int, str]], video: Path
 ) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -216,14 +217,20 @@ def test_the_glb_shows_the_same_surface(done: tuple[Path, dict[str, Facts]]) -> 
     assert (read.vertex_attributes["_DEFECT_ID"].ravel() == mesh.extra["defect_id"]).all()
 
 
-def test_the_gallery_has_its_pictures(done: tuple[Path, dict[str, Facts]]) -> None:
+def test_the_gallery_has_its_pictures(inputs: Path, done: tuple[Path, dict[str, Facts]]) -> None:
     out, facts = done
     folder = out / "gallery"
     assert facts["gallery"] == {"n_images": 3, "n_frames": 4}
     html = (folder / "index.html").read_text(encoding="utf-8")
     pictures = sorted(path.name for path in folder.glob("frame_*.jpg"))
-    assert len(pictures) == 3
-    assert all(f'src="{name}"' in html for name in pictures)
+    assert len([name for name in pictures if f'src="{name}"' in html]) == 3
+    frames = json.loads((inputs / "frames" / "frames.json").read_text(encoding="utf-8"))
+    for defect in rows_of(out, "defects.json"):
+        best = frames[defect["frames"][0]["frame_index"]]
+        link = f'<a href="frame_{best["source_index"]:06d}.jpg">{best["time_s"]:.2f} s</a>'
+        assert f"frame_{best['source_index']:06d}.jpg" in pictures
+        assert re.search(rf'data-defect="{defect["id"]}" .*?{re.escape(link)}', html.split("<thead>")[1])
+    assert all(f'href="{name}"' in html for name in pictures), "every picture is shown or linked"
     for name in ("mesh_1.png", "mesh_2.png"):
         picture = cv2.imread(str(folder / name))
         assert picture.shape == (120, 160, 3)

@@ -155,6 +155,18 @@ def parsed(value: object) -> tuple[Annotations | None, BadInput | None]:
         return None, error
 
 
+def test_null_instead_of_a_list_is_an_empty_list():
+    file = Path(__file__).parents[2] / "data" / "inputs" / "nulldet.json"
+    annotations = load_annotations(file)
+    assert (len(annotations.entries), annotations.detections) == (96, ())
+    box = {"label": "dent", "bbox": [0.1, 0.1, 0.2, 0.2], "score": 1}
+    (entry,) = parse_annotations({"1": {"detections": [box], "masks": None}}).entries
+    assert (len(entry.detections), entry.masks) == (1, ())
+    for wrong in (0, "", False, {}):
+        with pytest.raises(BadInput, match="must be a list"):
+            parse_annotations({"1": {"detections": wrong}})
+
+
 @settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(JSON_VALUES | st.dictionaries(TIMES, ENTRIES | JSON_VALUES, max_size=4))
 def test_any_json_value_is_understood_or_refused_with_its_place(value: object):

@@ -7,6 +7,7 @@ from core.gallery.boxes import (
     choose_frames,
     draw_boxes,
     draw_defect_numbers,
+    draw_place,
     group_by_frame,
 )
 from core.gallery.palette import PALETTE, label_colors
@@ -20,6 +21,16 @@ def test_frames_are_those_with_detections_in_order() -> None:
     frames = group_by_frame(rows, {0: 9, 1: 4, 2: None, 3: 9})
     assert [(frame.source_index, [row.id for row in frame.rows]) for frame in frames] == [(4, [1]), (9, [0, 3])]
     assert frames[0].file_name == "frame_000004.jpg"
+
+
+def test_a_place_without_a_box_gets_a_cross() -> None:
+    marked = draw_place(BLACK, 3, (0.5, 0.25)).astype(int)
+    rows, columns = np.nonzero(marked[..., 0] > 200)
+    assert (marked[50, 150] > 0).any()
+    assert (abs(rows - 50).max(), abs(columns - 150).max()) < (40, 60), "the cross and its number, nothing elsewhere"
+    assert not BLACK.any(), "the frame itself stays as it is"
+    for corner in ((0.0, 0.0), (1.0, 1.0)):
+        assert draw_place(BLACK, 3, corner).any()
 
 
 def test_too_many_frames_keep_the_best_of_every_defect_and_label() -> None:

@@ -6,10 +6,12 @@ import base64
 import hashlib
 import re
 from html.parser import HTMLParser
+from typing import Any
 
 import pytest
 
 from core.gallery.boxes import FrameBoxes
+from core.gallery.defects import defect_lines
 from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
 from core.timeline.clusters import cluster_detections
@@ -44,6 +46,18 @@ class Reader(HTMLParser):
         return [attributes for name, attributes in self.elements if name == tag]
 
 
+def record(number: int, label: str, size: float | None = 0.5) -> dict[str, Any]:
+    return {
+        "id": number,
+        "label": label,
+        "centroid": [10.0 * number, 0.0, 0.0],
+        "extent": {"value": size, "unit": "model", "sigma": 0.0625},
+        "persistence": {"k": 1, "n": 2, "share": 0.5},
+        "detections": [number],
+        "frames": [{"frame_index": number, "quality": 1.0, "detected": True, "x": 0.5, "y": 0.5}],
+    }
+
+
 def page(labels: list[str], shown: int | None = None) -> tuple[str, Reader]:
     rows = [mapped(i, (i * 10.0, 0, 0), float(i), label) for i, label in enumerate(labels)]
     rows += [unplaced(len(labels), "no_frame", source_index=None)]
@@ -51,7 +65,10 @@ def page(labels: list[str], shown: int | None = None) -> tuple[str, Reader]:
     rows = with_defect_ids(rows, clusters)
     frames = [FrameBoxes(i, float(i), (rows[i],)) for i in range(len(labels))]
     colors = label_colors([row.label for row in rows])
-    html = gallery_page(frames[:shown], len(frames), rows, [e.to_dict() for e in event_rows(clusters)], colors)
+    events = [event.to_dict() for event in event_rows(clusters)]
+    records = [record(number, labels[number]) for number in range(len(clusters))]
+    used = {i: {"source_index": i, "time_s": float(i)} for i in range(len(labels))}
+    html = gallery_page(frames[:shown], len(frames), rows, defect_lines(records, events, used), colors)
     reader = Reader()
     reader.feed(html)
     return html, reader
@@ -91,6 +108,20 @@ def test_every_defect_links_to_a_frame_and_every_detection_to_its_defect() -> No
     links = [a["href"] for a in reader.of("a")]
     assert {"mesh_1.png", "mesh_2.png", "frame_000000.jpg", "frame_000001.jpg"} <= set(links)
     assert all(image["alt"] or image == {"alt": ""} for image in reader.of("img"))
+
+
+def test_the_table_says_how_large_a_defect_is() -> None:
+    html, reader = page(["dent", "crack"])
+    table = html.split("<thead>")[1].split("</table>")[0]
+    assert "<th>Size</th>" in table
+    assert "Radius" not in table
+    assert "0.5 ± 0.062 model units" in reader.text
+    assert "1 of 2 frames" in reader.text
+
+
+def test_a_label_turns_no_text_around_it() -> None:
+    html, _ = page(["\u202egnp.exe"])
+    assert html.count("<bdi>\u202egnp.exe</bdi>") == 2
 
 
 def test_says_what_it_leaves_out() -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.report.build import build_report, write_tables
+from core.report.csv_form import read_csv
 from core.report.record import RunRecord
 from tests.core.making_record import failed_record, full_record, with_check
 
@@ -63,9 +64,8 @@ def test_json_is_finite_and_objects_carry_their_version(name: str, tmp_path: Pat
 def test_csv_and_json_say_the_same(tmp_path: Path) -> None:
     write_tables(build_report(RECORDS["full"]), tmp_path)
     rows = json.loads((tmp_path / "mapping/detections.json").read_text(encoding="utf-8"))
-    with (tmp_path / "mapping/detections.csv").open(encoding="utf-8", newline="") as stream:
-        for text, row in zip(csv.DictReader(stream), rows, strict=True):
-            assert text == {name: "" if value is None else str(value) for name, value in row.items()}
+    for text, row in zip(read_csv(tmp_path / "mapping/detections.csv"), rows, strict=True):
+        assert text == {name: "" if value is None else str(value) for name, value in row.items()}
 
 
 def test_frames_say_which_are_registered() -> None:

@@ -1,0 +1,95 @@
+"""The table of defects: how large each is, when it was seen, and the frame that shows it best; largest first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+Row = Mapping[str, Any]
+
+_UNITS = {"model": "model units"}
+"""Units of an extent as people read them, where that differs."""
+
+
+@dataclass(frozen=True)
+class BestFrame:
+    """The view that shows a defect best: the first of its `frames` in defects.json."""
+
+    source_index: int
+    time_s: float
+    place: tuple[float, float] | None
+    """Where the defect appears, normalised on the source frame; None by rules that do not tell."""
+
+
+@dataclass(frozen=True)
+class DefectLine:
+    """One row of the table."""
+
+    number: int
+    label: str
+    size: float | None
+    """Extent in `unit`; None = unknown."""
+    size_sigma: float | None
+    unit: str
+    start_s: float | None
+    end_s: float | None
+    visits: int
+    """Events: times that it came into sight."""
+    n_detections: int
+    n_frames: int
+    """Frames that show a detection of it."""
+    n_could_show: int
+    """Views that could see it."""
+    place: tuple[float, float, float]
+    best: BestFrame | None
+    """None when no registered view sees it."""
+
+    @property
+    def size_text(self) -> str:
+        """The size with its standard deviation and unit."""
+        if self.size is None:
+            return "unknown"
+        sigma = "unknown" if self.size_sigma is None else f"{self.size_sigma:.2g}"
+        return f"{self.size:.3g} ± {sigma} {_UNITS.get(self.unit, self.unit)}"
+
+
+def defect_lines(records: Sequence[Row], events: Sequence[Row], frames: Mapping[int, Row]) -> list[DefectLine]:
+    """Rows of the table, by size: the largest first, unknown sizes last, equal ones by number.
+
+    Args:
+        records: of defects.json.
+        events: of the timeline.
+        frames: of frames.csv, by index.
+    """
+    lines = [_line(record, [e for e in events if e["defect_id"] == record["id"]], frames) for record in records]
+    return sorted(lines, key=lambda line: (line.size is None, -(line.size or 0.0), line.number))
+
+
+def _line(record: Row, visits: Sequence[Row], frames: Mapping[int, Row]) -> DefectLine:
+    extent, seen = record.get("extent") or {}, record["persistence"]
+    x, y, z = (float(value) for value in record["centroid"])
+    return DefectLine(
+        number=int(record["id"]),
+        label=str(record["label"]),
+        size=extent.get("value"),
+        size_sigma=extent.get("sigma"),
+        unit=str(extent.get("unit") or "model"),
+        start_s=min((event["start_s"] for event in visits), default=None),
+        end_s=max((event["end_s"] for event in visits), default=None),
+        visits=len(visits),
+        n_detections=len(record["detections"]),
+        n_frames=int(seen["k"]),
+        n_could_show=int(seen["n"]),
+        place=(x, y, z),
+        best=_best(record["frames"], frames),
+    )
+
+
+def _best(views: Sequence[Row], frames: Mapping[int, Row]) -> BestFrame | None:
+    if not views:
+        return None
+    first = views[0]
+    frame = frames[int(first["frame_index"])]
+    place = (float(first["x"]), float(first["y"])) if "x" in first else None
+    return BestFrame(int(frame["source_index"]), float(frame["time_s"]), place)

@@ -1,0 +1,8 @@
+"""Annotations of the sample whose labels strangers wrote: formulas, markup, control characters, line breaks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+LABELS = Path(__file__).parent / "data" / "inputs" / "labels.json"
+SAMPLE = Path(__file__).parents[1] / "samples" / "turbine.mp4"

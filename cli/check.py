@@ -7,6 +7,7 @@ import json
 from typing import Any
 
 from cli.parameters import parse_assignment
+from cli.probe import notes
 from core.annotations.parse import load_annotations
 from core.annotations.placed import place
 from core.annotations.summary import AnnotationSummary, summarise
@@ -20,14 +21,18 @@ def command(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
     options = input_options(parsed.assignments)
     annotations = load_annotations(parsed.annotations)
-    placed = None
+    placed, video = None, None
     if parsed.video:
-        placed = place(annotations, probe_video(parsed.video, allow_truncated=True), options.time_convention)
+        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream)
+        placed, video = place(annotations, table, options.time_convention), table.info
     summary = summarise(annotations, placed)
     if parsed.json:
-        print(json.dumps({"schema_version": 1, **summary.to_dict()}, indent=1, allow_nan=False))
-    else:
-        print(f"{parsed.annotations.name}: {text(summary)}")
+        found = {**summary.to_dict(), "video": None if video is None else video.to_dict()}
+        print(json.dumps({"schema_version": 1, **found}, indent=1, allow_nan=False))
+        return 0
+    print(f"{parsed.annotations.name}: {text(summary)}")
+    for note in () if video is None else notes(video):
+        print(f"  video: {note}")
     return 0
 
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from cli.progress import duration
 from core.video.probe import probe_video
-from core.video.table import FrameTable
+from core.video.table import FrameTable, VideoInfo
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -22,17 +22,26 @@ def command(parsed: argparse.Namespace) -> int:
     print(f"  duration {duration(info.duration_s)}, {float(info.average_rate):.4g} frames/s on average")
     steps = f"{gaps['min_step_s']:.4f} to {gaps['max_step_s']:.4f} s"
     print(f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate")
-    if info.rotation_deg:
-        print(f"  rotated by {info.rotation_deg} degrees; size and boxes are of the frame as shown")
-    if info.streams:
-        print(f"  stream {info.stream} was read of {'; '.join(info.streams)} (--set input.video_stream=N for another)")
-    if info.joined:
-        print(f"  joined from {len(info.joined) + 1} recordings, at frame {', '.join(map(str, info.joined))}")
-    if info.repaired_times:
-        print(f"  {info.repaired_times} frames have no usable time in the file; times are made from the frame rate")
-    if info.truncated:
-        print(f"  damaged: {'; '.join(info.damage)} (a run needs --allow-truncated)")
+    for note in notes(info):
+        print(f"  {note}")
     return 0
+
+
+def notes(info: VideoInfo) -> list[str]:
+    """What somebody should know of a video before using it; empty for an ordinary sound one."""
+    found = []
+    if info.rotation_deg:
+        found.append(f"rotated by {info.rotation_deg} degrees; size and boxes are of the frame as shown")
+    if info.streams:
+        streams = "; ".join(info.streams)
+        found.append(f"stream {info.stream} was read of {streams} (--set input.video_stream=N for another)")
+    if info.joined:
+        found.append(f"joined from {len(info.joined) + 1} recordings, at frame {', '.join(map(str, info.joined))}")
+    if info.repaired_times:
+        found.append(f"{info.repaired_times} frames have no usable time in the file; it is made from the frame rate")
+    if info.truncated:
+        found.append(f"damaged: {'; '.join(info.damage)} (a run needs --allow-truncated)")
+    return found
 
 
 def _gaps(table: FrameTable) -> dict[str, float | bool]:

@@ -163,7 +163,7 @@ class VideoReader:
             yield from self._sound.sound()
 
     def _decode(self) -> Iterator[Any]:
-        """Frames of the stream as the decoder gives them; None where it is known that no more come for now."""
+        """Frames of the stream as the decoder gives them; None once it holds none back any more."""
         decoder = self._stream.codec_context
         number = -1
         for number, (packet, whole) in enumerate(self._checked_packets()):

@@ -12,6 +12,7 @@ from api.resource import Resources
 from api.routes import actions, artifacts, frames, health, inspections, logs, options, stages, system, tables, uploads
 from api.services import Services, services_from
 from api.state import State
+from api.trust import TrustMiddleware
 from api.watching import Watcher
 from core.versions import program_version
 from store.keys import KeyRing, Keys
@@ -38,6 +39,8 @@ def create_app(services: Services | None = None) -> FastAPI:
     app.state.bladeatlas = state = _state(services or services_from(DeploymentSettings()))
     problems.install(app)
     openapi.install(app)
+    # The last one added is the first that sees a request: refusals are named and counted too.
+    app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=state.services.settings.host_names())
     app.add_middleware(RequestMiddleware, metrics=RequestMetrics(state.registry))
     for module in _ROUTERS:
         app.include_router(module.router)

@@ -14,7 +14,7 @@ from api.problems import Refused
 from api.state import State, state_of
 from api.trust import is_loopback_address
 
-_BEARER = HTTPBearer(
+BEARER = HTTPBearer(
     auto_error=False, description="API key from `bladeatlas keys create`. Without any key the server serves loopback."
 )
 _CHALLENGE = {"WWW-Authenticate": "Bearer"}
@@ -29,7 +29,7 @@ class Caller:
 
 
 async def caller(
-    request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Depends(_BEARER)]
+    request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Depends(BEARER)]
 ) -> Caller:
     """The caller of a request; 401 for a missing or unknown key."""
     state: State = state_of(request)

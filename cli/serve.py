@@ -19,6 +19,7 @@ from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.db import Database
+from store.environment import deployment_settings
 from store.graph import Graph, load_graph
 from store.keys import Keys
 from store.opening import open_artifacts, open_database
@@ -40,7 +41,7 @@ def command(parsed: argparse.Namespace) -> int:
     """Serve until SIGTERM or SIGINT; returns the exit code."""
     if parsed.workers is not None and parsed.workers < 1:
         raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
-    settings = DeploymentSettings()
+    settings = deployment_settings()
     json_log.configure()
     with _alone(settings) as identity:
         database = open_database(settings)

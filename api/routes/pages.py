@@ -26,6 +26,7 @@ _START_SCRIPT = """\
 SwaggerUIBundle({url: "openapi.json", dom_id: "#docs", deepLinking: true, validatorUrl: null});
 """
 # Both libraries write styles into the page and show pictures from data; Redoc searches in a worker made of a blob.
+# Redoc would also fetch its maker's logo from elsewhere: the policy keeps the browser from asking for it.
 _POLICY = "; ".join(
     (
         "default-src 'none'",

@@ -2,28 +2,47 @@
 
 from __future__ import annotations
 
-from fastapi import FastAPI
+import sys
+
+from fastapi import Depends, FastAPI
 from prometheus_client import CollectorRegistry
 
 from api import openapi, problems
 from api.middleware import RequestMetrics, RequestMiddleware
 from api.probing import Prober
 from api.resource import Resources
-from api.routes import actions, artifacts, frames, health, inspections, logs, options, stages, system, tables, uploads
+from api.routes import (
+    actions,
+    artifacts,
+    frames,
+    health,
+    inspections,
+    logs,
+    options,
+    pages,
+    stages,
+    system,
+    tables,
+    uploads,
+)
 from api.services import Services, services_from
 from api.state import State
+from api.strictness import known_query
+from api.trust import TrustMiddleware
 from api.watching import Watcher
+from core.errors import BadInput
 from core.versions import program_version
+from store.environment import deployment_settings
 from store.keys import KeyRing, Keys
-from store.settings import DeploymentSettings
 
-_ROUTERS = (health, system, options, uploads, inspections, actions, stages, tables, logs, artifacts, frames)
+_ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, logs, artifacts, frames)
 
 
 def create_app(services: Services | None = None) -> FastAPI:
     """Make the application with its routes and error handlers.
 
-    Without `services` they are made from the environment (`DeploymentSettings`), tables included.
+    Without `services` they are made from the environment, tables included; wrong settings end the process with
+    exit code 2.
     """
     app = FastAPI(
         title="BladeAtlas",
@@ -32,16 +51,31 @@ def create_app(services: Services | None = None) -> FastAPI:
         responses={
             "default": {"model": problems.Problem, "description": "Any error, as application/problem+json (RFC 9457)"}
         },
+        dependencies=[Depends(known_query)],
+        # `api.routes.pages` serves these, without a foreign script.
+        openapi_url=None,
+        docs_url=None,
+        redoc_url=None,
         # A trailing slash names nothing: a redirect would lose the body of a form.
         redirect_slashes=False,
     )
-    app.state.bladeatlas = state = _state(services or services_from(DeploymentSettings()))
+    app.state.bladeatlas = state = _state(services or _from_environment())
     problems.install(app)
     openapi.install(app)
+    # The last one added is the first that sees a request: refusals are named and counted too.
+    app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=state.services.settings.host_names())
     app.add_middleware(RequestMiddleware, metrics=RequestMetrics(state.registry))
     for module in _ROUTERS:
         app.include_router(module.router)
     return app
+
+
+def _from_environment() -> Services:
+    try:
+        return services_from(deployment_settings())
+    except BadInput as error:  # the server that calls the factory would show a traceback and exit code 1
+        sys.stderr.write(f"bladeatlas: {error.message}\n")
+        raise SystemExit(2) from None
 
 
 def _state(services: Services) -> State:

@@ -1,8 +1,7 @@
-"""Who calls: the owner of an API key, or, while no key was made, whoever calls from this machine."""
+"""Who calls: the owner of an API key, or, as long as no key was ever made, whoever calls from this machine."""
 
 from __future__ import annotations
 
-import ipaddress
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated
@@ -13,8 +12,9 @@ from starlette.concurrency import run_in_threadpool
 
 from api.problems import Refused
 from api.state import State, state_of
+from api.trust import is_loopback_address
 
-_BEARER = HTTPBearer(
+BEARER = HTTPBearer(
     auto_error=False, description="API key from `bladeatlas keys create`. Without any key the server serves loopback."
 )
 _CHALLENGE = {"WWW-Authenticate": "Bearer"}
@@ -29,14 +29,14 @@ class Caller:
 
 
 async def caller(
-    request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Depends(_BEARER)]
+    request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Depends(BEARER)]
 ) -> Caller:
     """The caller of a request; 401 for a missing or unknown key."""
     state: State = state_of(request)
     ring = state.keys
     if not ring.fresh:
         await run_in_threadpool(ring.refresh)
-    if ring.empty and credentials is None:
+    if not ring.ever_made and credentials is None:
         if _is_loopback(request):
             return Caller("")
         detail = "no API key was made yet, so only this machine is served; make one with `bladeatlas keys create`"
@@ -52,10 +52,7 @@ async def caller(
 
 def _is_loopback(request: Request) -> bool:
     host = request.client.host if request.client else ""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host in ("localhost", "")  # "": a socket of this machine
+    return host in ("localhost", "") or is_loopback_address(host)  # "": a socket of this machine
 
 
 CallerOf = Annotated[Caller, Depends(caller)]

@@ -19,6 +19,7 @@ from api.problems import FieldError, Refused
 from api.receiving import PIECE, on_disk
 from api.services import Services
 from core.errors import DiskFull
+from core.names import unknown_name
 from store.disk import NO_SPACE
 
 if TYPE_CHECKING:
@@ -145,8 +146,8 @@ class FormReader:
         _, options = parse_options_header(self._disposition)
         name = options.get(b"name", b"").decode("utf-8", "replace")
         if name not in self._limits or name in self.parts:
-            detail = f"the part '{name}' comes twice" if name in self.parts else f"unknown part '{name[:64]}'"
-            detail += f"; known: {', '.join(self._limits)}"
+            twice = f"the part '{name}' comes twice"
+            detail = twice if name in self.parts else unknown_name("part", name[:64], self._limits)
             errors = [FieldError(pointer=f"/{name[:64]}", detail=detail)]
             raise Refused(HTTPStatus.UNPROCESSABLE_ENTITY, "bad_part", detail, where=name[:64], errors=errors)
         part = Part(name, self._services.uploads.part(), self._limits[name])

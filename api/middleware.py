@@ -13,6 +13,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 _USABLE = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _BUCKETS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0, 60.0)
 
+_ACTIVE = ("text/html", "image/svg+xml", "application/xhtml+xml")
+"""Kinds of files that a browser runs."""
+_POLICY = (
+    "default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+"""For pages that are files of a result, such as the gallery: they show their own pictures and reach nothing else."""
+
 
 class RequestMetrics:
     """Counts and durations of requests, by route and not by path, so that ids make no new series."""
@@ -60,6 +68,8 @@ class RequestMiddleware:
                 headers["X-Request-Id"] = name
                 headers.setdefault("X-Content-Type-Options", "nosniff")
                 headers.setdefault("Cache-Control", "no-cache")
+                if headers.get("content-type", "").startswith(_ACTIVE):
+                    headers.setdefault("Content-Security-Policy", _POLICY)
             await send(message)
 
         try:

@@ -1,19 +1,18 @@
-"""Tables as JSON or CSV, whichever is asked for, streamed row by row."""
+"""Tables as JSON or CSV, whichever is asked for."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from fastapi import Query, Request
-from fastapi.responses import Response, StreamingResponse
+from fastapi.responses import Response
 
 from core.report.csv_form import csv_line
 
 CSV = "text/csv; charset=utf-8"
-_PIECE = 1 << 16
+_ENCODER = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
 
 Format = Annotated[
     Literal["json", "csv"] | None, Query(description="wins over `Accept`; without both it is JSON", examples=["csv"])
@@ -46,37 +45,45 @@ def _quality(accept: str, media_type: str) -> float:
     return next((found[name] for name in (media_type, f"{major}/*", "*/*") if name in found), 0.0)
 
 
+class TableForm:
+    """How the rows of a table are written: as an array of objects, or as CSV with these columns.
+
+    `flat` makes rows of CSV from what JSON shows nested.
+    """
+
+    def __init__(
+        self,
+        columns: Sequence[str],
+        *,
+        as_csv: bool,
+        flat: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda row: row,
+    ) -> None:
+        self._columns, self._as_csv, self._flat = columns, as_csv, flat
+        self.media_type = CSV if as_csv else "application/json"
+
+    def begin(self) -> bytes:
+        """What stands before the first row."""
+        return _csv([self._columns]) if self._as_csv else b"["
+
+    def rows(self, rows: Iterable[Mapping[str, Any]], *, first: bool) -> bytes:
+        """Some rows; `first`: none was written before."""
+        if self._as_csv:
+            return _csv([row.get(name) for name in self._columns] for row in map(self._flat, rows))
+        texts = [_ENCODER.encode(dict(row)) for row in rows]
+        before = ("\n" if first else ",\n") if texts else ""
+        return (before + ",\n".join(texts)).encode("utf-8", "replace")
+
+    def end(self) -> bytes:
+        """What stands behind the last row."""
+        return b"" if self._as_csv else b"\n]\n"
+
+
 def table(request: Request, asked: str | None, columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Response:
-    """Rows as an array of objects, or as CSV with these columns."""
-    as_csv = wants_csv(request, asked)
-    pieces = _joined(_csv(columns, rows) if as_csv else _json(rows))
-    # The first piece is made before the status is sent, so that a database that is away is a 503 and no torso.
-    first = next(pieces)
-    headers = {"Vary": "Accept"}
-    return StreamingResponse(chain([first], pieces), media_type=CSV if as_csv else "application/json", headers=headers)
+    """A table that is small enough for one piece."""
+    form = TableForm(columns, as_csv=wants_csv(request, asked))
+    body = form.begin() + form.rows(rows, first=True) + form.end()
+    return Response(body, media_type=form.media_type, headers={"Vary": "Accept"})
 
 
-def _json(rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    yield "["
-    for number, row in enumerate(rows):
-        yield (",\n" if number else "\n") + json.dumps(dict(row), allow_nan=False, ensure_ascii=False)
-    yield "\n]\n"
-
-
-def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    yield csv_line(columns)
-    for row in rows:
-        yield csv_line([row.get(name) for name in columns])
-
-
-def _joined(texts: Iterator[str]) -> Iterator[bytes]:
-    """Pieces worth a write."""
-    buffer: list[str] = []
-    size = 0
-    for text in texts:
-        buffer.append(text)
-        size += len(text)
-        if size >= _PIECE:
-            yield "".join(buffer).encode("utf-8", "replace")
-            buffer, size = [], 0
-    yield "".join(buffer).encode("utf-8", "replace")
+def _csv(rows: Iterable[Sequence[Any]]) -> bytes:
+    return "".join(map(csv_line, rows)).encode("utf-8", "replace")

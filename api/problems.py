@@ -10,7 +10,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
-from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
@@ -27,7 +27,11 @@ _STATUS: tuple[tuple[type[BladeAtlasError], HTTPStatus], ...] = (
     (DiskFull, HTTPStatus.INSUFFICIENT_STORAGE),
     (ResourceError, HTTPStatus.SERVICE_UNAVAILABLE),
 )
-_BY_CODE = {"conflict": HTTPStatus.CONFLICT, "bad_cursor": HTTPStatus.BAD_REQUEST}
+_BY_CODE = {
+    "conflict": HTTPStatus.CONFLICT,
+    "table_changed": HTTPStatus.CONFLICT,
+    "bad_cursor": HTTPStatus.BAD_REQUEST,
+}
 _RETRYABLE = {
     HTTPStatus.LOCKED,
     HTTPStatus.TOO_MANY_REQUESTS,
@@ -112,6 +116,11 @@ def install(app: FastAPI) -> None:
     for kind in (OperationalError, InterfaceError, PoolTimeout, DBAPIError):
         app.add_exception_handler(kind, _database)
     app.add_exception_handler(Exception, _unexpected)
+
+
+def answer(request: Request, error: Refused | SQLAlchemyError) -> JSONResponse:
+    """The answer to a request that is refused before any route sees it."""
+    return _refused(request, error) if isinstance(error, Refused) else _database(request, error)
 
 
 def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from functools import partial
 from http import HTTPStatus
-from typing import TypeVar
 
-import anyio
 from fastapi import Request
 from starlette.requests import ClientDisconnect
 
@@ -17,10 +15,9 @@ from api.limits import require_space
 from api.problems import Refused
 from api.services import Services
 from api.state import State
+from api.threads import LimitedThreads
 from store.upload_file import UploadFile
 from store.uploads import UploadView
-
-T = TypeVar("T")
 
 PIECE = 1 << 20
 _COMMIT_EVERY_BYTES = 64 << 20
@@ -32,22 +29,7 @@ _DISK_THREADS = 8
 """Threads that wait for disks: a few, so that many uploads leave threads to those who only ask."""
 
 
-class DiskThreads:
-    """Where calls run that wait for a disk; one limit per event loop."""
-
-    def __init__(self) -> None:
-        self._limiter: anyio.CapacityLimiter | None = None
-        self._loop: asyncio.AbstractEventLoop | None = None
-
-    async def run(self, call: Callable[[], T]) -> T:
-        """Run a call in a thread."""
-        loop = asyncio.get_running_loop()
-        if self._limiter is None or self._loop is not loop:
-            self._limiter, self._loop = anyio.CapacityLimiter(_DISK_THREADS), loop
-        return await anyio.to_thread.run_sync(call, limiter=self._limiter)
-
-
-on_disk = DiskThreads().run
+on_disk = LimitedThreads(_DISK_THREADS).run
 """Run a call that waits for the disk in a thread."""
 
 

@@ -7,14 +7,14 @@ from dataclasses import asdict
 from typing import Any
 
 from cli.terminal import say, say_json
+from store.environment import deployment_settings
 from store.keys import Keys, KeyView
 from store.opening import open_database
-from store.settings import DeploymentSettings
 
 
 def command(parsed: argparse.Namespace) -> int:
     """Do what was asked for; a new key is printed once and never again."""
-    database = open_database(DeploymentSettings())
+    database = open_database(deployment_settings())
     try:
         keys = Keys(database)
         if parsed.action == "create":

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import fcntl
-import ipaddress
 import signal
 import uuid
 from collections.abc import Callable, Iterator
@@ -13,15 +12,16 @@ from functools import partial
 
 import uvicorn
 from fastapi import FastAPI
-from sqlalchemy import func, select
 
 from api.app import create_app
 from api.services import make_services
+from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.db import Database
+from store.environment import deployment_settings
 from store.graph import Graph, load_graph
-from store.models import ApiKey
+from store.keys import Keys
 from store.opening import open_artifacts, open_database
 from store.plan import Plan
 from store.retention import Retention
@@ -41,7 +41,7 @@ def command(parsed: argparse.Namespace) -> int:
     """Serve until SIGTERM or SIGINT; returns the exit code."""
     if parsed.workers is not None and parsed.workers < 1:
         raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
-    settings = DeploymentSettings()
+    settings = deployment_settings()
     json_log.configure()
     with _alone(settings) as identity:
         database = open_database(settings)
@@ -91,23 +91,18 @@ def _alone(settings: DeploymentSettings) -> Iterator[str]:
 
 
 def _refuse_strangers(database: Database, host: str) -> None:
-    """Without keys anybody may do anything, so only this machine may call.
+    """As long as no key was ever made anybody may do anything, so only this machine may call.
 
     Raises:
-        BadInput: `host` is not loopback and there is no key.
+        BadInput: `host` is not loopback and no key was ever made.
     """
-    with database.read() as session:
-        keys = session.scalar(select(func.count()).select_from(ApiKey).where(ApiKey.revoked_at.is_(None)))
-    if not keys and not _is_loopback(host):
-        message = f"there is no API key, so the server binds only to this machine, not to '{host}'"
-        raise BadInput(message, code="no_keys", where="--host")
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
+    keys = Keys(database)
+    if not keys.ever_made():
+        if host != "localhost" and not is_loopback_address(host):
+            message = f"no API key was ever made, so the server binds only to this machine, not to '{host}'"
+            raise BadInput(message, code="no_keys", where="--host")
+    elif not keys.valid():
+        _log.warning("no_valid_key", meaning="every key is revoked: all requests are refused until one is made")
 
 
 def _background(

@@ -8,6 +8,7 @@ from cli.terminal import say
 from core.errors import BadInput
 from store import json_log
 from store.db import Database
+from store.environment import deployment_settings
 from store.opening import open_database
 from store.settings import DeploymentSettings
 from store.workers import WorkerRegistry
@@ -20,7 +21,7 @@ _LATE = 3
 
 def command(parsed: argparse.Namespace) -> int:
     """Run tasks until the process is told to stop; returns its exit code."""
-    settings = DeploymentSettings()
+    settings = deployment_settings()
     queues = [name.strip() for name in parsed.queues.split(",")]
     if not set(queues) <= set(_QUEUES):
         raise BadInput(f"queues '{parsed.queues}'; known: {', '.join(_QUEUES)}", where="--queues")

@@ -69,6 +69,14 @@ class Database:
             yield session
 
     @contextmanager
+    def snapshot(self) -> Iterator[Session]:
+        """A transaction that only looks, and sees one moment however often it does."""
+        with self.read() as session:
+            if not self.is_sqlite:  # there every transaction is of this kind
+                session.connection(execution_options={"isolation_level": "REPEATABLE READ"})
+            yield session
+
+    @contextmanager
     def write(self) -> Iterator[Session]:
         """A transaction that commits when the block ends well and rolls back otherwise."""
         try:

@@ -72,6 +72,11 @@ class Keys:
             rows = session.execute(select(ApiKey.id, ApiKey.digest).where(ApiKey.revoked_at.is_(None)))
             return {key_id: digest for key_id, digest in rows}  # noqa: C416 - rows are not plain tuples
 
+    def ever_made(self) -> bool:
+        """True once there was a key. Revoked ones count: their rows stay, so a server never opens again."""
+        with self.db.read() as session:
+            return session.scalar(select(ApiKey.id).limit(1)) is not None
+
     def note_use(self, key_id: str) -> None:
         """Remember that a key was used, once a minute at most."""
         with self.db.write() as session:
@@ -88,6 +93,7 @@ class KeyRing:
     fresh_s: float = 1.0
     clock: Callable[[], float] = time.monotonic
     _valid: dict[str, str] = field(default_factory=dict)
+    _ever_made: bool = True
     _read_at: float | None = None
     _noted_at: dict[str, float] = field(default_factory=dict)
     _mutex: threading.Lock = field(default_factory=threading.Lock)
@@ -101,13 +107,14 @@ class KeyRing:
         """Read the valid keys, unless somebody just did."""
         with self._mutex:
             if not self.fresh:
+                self._ever_made = self.keys.ever_made()
                 self._valid = self.keys.valid()
                 self._read_at = self.clock()
 
     @property
-    def empty(self) -> bool:
-        """True when no key was ever made, or all are revoked."""
-        return not self._valid
+    def ever_made(self) -> bool:
+        """True once a key was made, whether or not it may still be used."""
+        return self._ever_made
 
     def owner(self, key: str) -> str | None:
         """Id of the key that this text is; None for no valid one."""

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import base64
-import binascii
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from sqlalchemy import Select, and_, func, or_, select
 
-from core.errors import BadInput
+from store.cursors import bad_cursor, decode_cursor, encode_cursor
 from store.db import Database
 from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state_column
+
+_NAME = "inspections"
 
 
 @dataclass(frozen=True)
@@ -73,18 +72,15 @@ def _chosen(chosen: Filter) -> Select[Inspection]:
 
 
 def _encoded(row: Inspection) -> str:
-    text = json.dumps([row.created_at.isoformat(), row.id])
-    return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
+    return encode_cursor(_NAME, (row.created_at.isoformat(), row.id))
 
 
 def _decoded(cursor: str) -> tuple[datetime, str]:
+    created_at, inspection_id = decode_cursor(_NAME, (str, str), cursor)
     try:
-        text = base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4))
-        created_at, inspection_id = json.loads(text)
-        moment = datetime.fromisoformat(created_at)
-        if moment.tzinfo is None or not isinstance(inspection_id, str) or "\0" in inspection_id:
-            raise ValueError(inspection_id)
-        inspection_id.encode()
-        return moment.astimezone(UTC), inspection_id
-    except (ValueError, TypeError, OverflowError, RecursionError, binascii.Error):
-        raise BadInput("this cursor was not given out by the service", code="bad_cursor", where="cursor") from None
+        moment = datetime.fromisoformat(str(created_at))
+        if moment.tzinfo is None:
+            raise bad_cursor()
+        return moment.astimezone(UTC), str(inspection_id)
+    except (ValueError, OverflowError):
+        raise bad_cursor() from None

@@ -284,6 +284,18 @@ class MetricRow(_Row, Base):
     value: Mapped[float]
 
 
+class TableVersion(Base):
+    """How often the rows of one table of an inspection have changed: pages of one version belong together."""
+
+    __tablename__ = "table_versions"
+
+    inspection_id: Mapped[str] = _inspection_key()
+    name: Mapped[str] = mapped_column(String(16), primary_key=True)
+    """As `store.rows` calls the table, e.g. ``events``."""
+    version: Mapped[int]
+    """Grows with every change; without a row it is 0."""
+
+
 class Upload(Base):
     """One resumable upload (tus). The bytes lie in the upload folder under the id."""
 

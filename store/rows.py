@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from sqlalchemy import delete, insert, inspect
+from sqlalchemy import CursorResult, delete, insert, inspect, update
 from sqlalchemy.orm import Session
 
-from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow
+from store.leasing import changed
+from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow, TableVersion
 
 _PER_TASK: dict[str, type[Base]] = {"cases": CaseRow, "metrics": MetricRow}
 """Tables that many tasks share: a task replaces what it wrote itself."""
@@ -23,39 +24,50 @@ _TABLES = {**_PER_TASK, **_WHOLE}
 
 def write_rows(session: Session, inspection_id: str, task_key: str, rows: Mapping[str, Any]) -> None:
     """Replace the rows of one task; keys that a table does not know are left to the files."""
-    for name, table in _PER_TASK.items():
-        _clear(session, table, inspection_id, task_key)
-        _insert(session, table, inspection_id, task_key, rows.get(name, ()))
-    for name, table in _WHOLE.items():
+    for name in _PER_TASK:
+        _replace(session, name, inspection_id, task_key, rows.get(name, ()), only_of_task=True)
+    for name in _WHOLE:
         if name in rows:
-            _clear(session, table, inspection_id, None)
-            _insert(session, table, inspection_id, task_key, rows[name])
+            _replace(session, name, inspection_id, task_key, rows[name])
 
 
 def replace_rows(session: Session, inspection_id: str, rows: Mapping[str, Any]) -> None:
     """Replace whole tables of an inspection: those that `rows` names."""
     for name, values in rows.items():
-        _clear(session, _TABLES[name], inspection_id, None)
-        _insert(session, _TABLES[name], inspection_id, "", values)
+        _replace(session, name, inspection_id, "", values)
 
 
 def clear_rows(session: Session, inspection_id: str) -> None:
     """Remove every row of an inspection."""
-    for table in _TABLES.values():
-        _clear(session, table, inspection_id, None)
+    for name in _TABLES:
+        _replace(session, name, inspection_id, "", ())
 
 
-def _clear(session: Session, table: type[Base], inspection_id: str, task_key: str | None) -> None:
+def _replace(
+    session: Session, name: str, inspection_id: str, task_key: str, rows: Any, *, only_of_task: bool = False
+) -> None:
+    """Replace rows of one table; the caller has locked the inspection, so versions are counted one by one."""
+    table = _TABLES[name]
     columns = table.__table__.columns
     statement = delete(table).where(columns["inspection_id"] == inspection_id)
-    if task_key is not None:
+    if only_of_task:
         statement = statement.where(columns["task_key"] == task_key)
-    session.execute(statement)
-
-
-def _insert(session: Session, table: type[Base], inspection_id: str, task_key: str, rows: Any) -> None:
-    names = {column.key for column in inspect(table).column_attrs}
-    owner = {"inspection_id": inspection_id, "task_key": task_key}
-    values = [{**{key: value for key, value in row.items() if key in names}, **owner} for row in rows]
+    removed = session.execute(statement)
+    assert isinstance(removed, CursorResult)  # what every DELETE gives
+    values = _values(table, inspection_id, task_key, rows)
     if values:
         session.execute(insert(table), values)
+    if values or removed.rowcount:
+        _count_change(session, name, inspection_id)
+
+
+def _values(table: type[Base], inspection_id: str, task_key: str, rows: Any) -> list[dict[str, Any]]:
+    names = {column.key for column in inspect(table).column_attrs}
+    owner = {"inspection_id": inspection_id, "task_key": task_key}
+    return [{**{key: value for key, value in row.items() if key in names}, **owner} for row in rows]
+
+
+def _count_change(session: Session, name: str, inspection_id: str) -> None:
+    where = (TableVersion.inspection_id == inspection_id, TableVersion.name == name)
+    if not changed(session, update(TableVersion).where(*where).values(version=TableVersion.version + 1)):
+        session.execute(insert(TableVersion).values(inspection_id=inspection_id, name=name, version=1))

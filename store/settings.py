@@ -45,6 +45,9 @@ class DeploymentSettings(BaseSettings):
     probe_seconds: float = Field(60.0, gt=0, description="time limit of looking into an uploaded video")
     probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
 
+    trusted_hosts: str = Field(
+        "", description="names that the server goes by, separated by commas; empty = any. Only with API keys"
+    )
     graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
 
     def folder(self, name: str) -> Path:
@@ -58,6 +61,10 @@ class DeploymentSettings(BaseSettings):
     def artifacts(self) -> Path | str:
         """Root of the artifact store: a folder, or a URL."""
         return self.artifacts_url or self.folder("artifacts")
+
+    def host_names(self) -> frozenset[str]:
+        """Names that the server goes by; empty = any."""
+        return frozenset(name.strip().lower() for name in self.trusted_hosts.split(",") if name.strip())
 
     def worker_count(self) -> int:
         """Number of tasks side by side."""

@@ -1,21 +1,24 @@
-"""Rows of an inspection's tables as others read them: columns of the contract, filtered, in pieces."""
+"""Rows of an inspection's tables as others read them: columns of the contract, filtered, in pages.
+
+Every page is read in a short transaction of its own. Tables count their changes (`TableVersion`), and a page that
+follows another is read only while the count is the same: what a reader puts together was there at one moment.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, select
+from sqlalchemy import ColumnElement, Select, literal, select, tuple_
 from sqlalchemy.orm import Session
 
+from core.errors import BadInput
 from core.mapping.rows import DETECTION_COLUMNS
 from core.report.rows import CASE_COLUMNS
+from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database
-from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow
-
-_PIECE = 500
-"""Rows that are in memory at a time."""
+from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow, TableVersion
 
 EVENT_COLUMNS = tuple(c.name for c in EventRow.__table__.columns if c.name not in ("inspection_id", "task_key"))
 
@@ -25,15 +28,22 @@ class Table:
     """One table: where its rows are, what is shown of them, in which order."""
 
     name: str
+    """As `store.rows` calls it."""
     model: type[Base]
     columns: tuple[str, ...]
-    """As shown; those of a record's CSV for defects."""
+    """As shown; the record alone for defects."""
     order: tuple[str, ...]
+    """Columns that order the rows and tell each from the others."""
+
+    @property
+    def kinds(self) -> tuple[type, ...]:
+        """Types of the columns of `order`."""
+        return tuple(self.model.__table__.columns[name].type.python_type for name in self.order)
 
 
 CASES = Table("cases", CaseRow, CASE_COLUMNS, ("kind", "name"))
 DETECTIONS = Table("detections", DetectionRow, DETECTION_COLUMNS, ("id",))
-TIMELINE = Table("timeline", EventRow, EVENT_COLUMNS, ("event_id",))
+TIMELINE = Table("events", EventRow, EVENT_COLUMNS, ("event_id",))
 METRICS = Table("metrics", MetricRow, ("name", "value"), ("name",))
 DEFECTS = Table("defects", DefectRow, ("record",), ("id",))
 DEFECT_COLUMNS = (
@@ -70,32 +80,127 @@ class RowFilter:
     """Rows that begin at or before this time."""
 
 
-def read_rows(db: Database, inspection_id: str, table: Table, chosen: RowFilter) -> Iterator[dict[str, Any]]:
-    """Rows as JSON values, a piece of them in memory at a time; the transaction ends with the iterator."""
+@dataclass(frozen=True)
+class Position:
+    """Behind which row of which version of a table a page begins."""
+
+    version: int
+    key: tuple[CursorValue, ...]
+    """Of the row: its values in the columns of `Table.order`."""
+
+    def to_cursor(self, table: Table) -> str:
+        """As it is given to clients."""
+        return encode_cursor(table.name, (self.version, *self.key))
+
+    @staticmethod
+    def from_cursor(table: Table, cursor: str) -> Position:
+        """What a client gives back; `BadInput` for a cursor that is not of this table."""
+        version, *key = decode_cursor(table.name, (int, *table.kinds), cursor)
+        return Position(int(version), tuple(key))
+
+
+@dataclass(frozen=True)
+class Page:
+    """Rows that follow each other, as JSON values."""
+
+    version: int
+    """Of the table."""
+    rows: Sequence[dict[str, Any]]
+    next: Position | None
+    """Where the next page begins; None on the last."""
+
+
+class TableChanged(BadInput):
+    """The rows were replaced since the page before was read, so the next page would not belong to it."""
+
+    code = "table_changed"
+
+
+def read_page(
+    db: Database, inspection_id: str, table: Table, chosen: RowFilter, limit: int, after: Position | None = None
+) -> Page:
+    """Up to `limit` rows behind a position; no transaction is open when they are returned.
+
+    Raises:
+        TableChanged: the table is not of the version that `after` names any more.
+    """
     columns = table.model.__table__.columns
-    query = select(*(columns[name] for name in table.columns)).where(columns["inspection_id"] == inspection_id)
-    query = query.where(*_conditions(table.model, chosen)).order_by(*(columns[name] for name in table.order))
+    keys = [columns[name] for name in table.order]
+    query = _rows(inspection_id, table, chosen, keys).limit(limit + 1)
+    if after is not None:
+        query = query.where(tuple_(*keys) > tuple_(*(literal(value) for value in after.key)))
+    with db.snapshot() as session:
+        version = _version(session, inspection_id, table)
+        if after is not None and after.version != version:
+            raise TableChanged(
+                "the rows were replaced while they were read; begin again without a cursor", where="cursor"
+            )
+        found = session.execute(query).all()
+    rows = [_shown(row, table) for row in found[:limit]]
+    last = tuple(found[limit - 1][-len(keys) :]) if len(found) > limit else None
+    return Page(version, rows, None if last is None else Position(version, last))
+
+
+def read_rows(db: Database, inspection_id: str, table: Table, chosen: RowFilter) -> list[dict[str, Any]]:
+    """All chosen rows at once: for filters that leave a few."""
     with db.read() as session:
-        yield from _pieces(session, query, table)
+        return [_shown(row, table) for row in session.execute(_rows(inspection_id, table, chosen, []))]
 
 
-def _pieces(session: Session, query: Any, table: Table) -> Iterator[dict[str, Any]]:
-    for row in session.execute(query, execution_options={"yield_per": _PIECE}):
-        yield dict(row[0]) if table is DEFECTS else dict(zip(table.columns, row, strict=True))
+def table_version(db: Database, inspection_id: str, table: Table) -> int:
+    """How often the table has changed."""
+    with db.read() as session:
+        return _version(session, inspection_id, table)
+
+
+def labels(db: Database, inspection_id: str) -> list[str]:
+    """Every label of the detections, once."""
+    query = select(DetectionRow.label).where(DetectionRow.inspection_id == inspection_id).distinct()
+    with db.read() as session:
+        return list(session.scalars(query.order_by(DetectionRow.label)))
+
+
+def _version(session: Session, inspection_id: str, table: Table) -> int:
+    where = (TableVersion.inspection_id == inspection_id, TableVersion.name == table.name)
+    return session.scalar(select(TableVersion.version).where(*where)) or 0
+
+
+def _rows(inspection_id: str, table: Table, chosen: RowFilter, keys: Sequence[ColumnElement[Any]]) -> Select[Any]:
+    """The chosen rows in their order: what is shown of them, then the columns `keys`."""
+    columns = table.model.__table__.columns
+    query = select(*(columns[name].label(f"shown_{name}") for name in table.columns), *keys)
+    query = query.where(columns["inspection_id"] == inspection_id, *_conditions(table.model, chosen))
+    return query.order_by(*(columns[name] for name in table.order))
+
+
+def _shown(row: Sequence[Any], table: Table) -> dict[str, Any]:
+    return dict(row[0]) if table is DEFECTS else dict(zip(table.columns, row, strict=False))
 
 
 def _conditions(model: type[Base], chosen: RowFilter) -> Sequence[ColumnElement[bool]]:
     columns = model.__table__.columns
     found: list[ColumnElement[bool]] = [
-        columns[name] == value for name, value in chosen.equal.items() if value is not None
+        _column(model, name) == value for name, value in chosen.equal.items() if value is not None
     ]
     if chosen.min_confidence is not None:
-        found.append(columns["confidence"] >= chosen.min_confidence)
+        found.append(_column(model, "confidence") >= chosen.min_confidence)
     begin, end = ("time_s", "time_s") if "time_s" in columns else ("start_s", "end_s")
     if chosen.from_s is not None:
         found.append(columns[end] >= chosen.from_s)
     if chosen.to_s is not None:
         found.append(columns[begin] <= chosen.to_s)
+    return found
+
+
+def _column(model: type[Base], name: str) -> ColumnElement[Any]:
+    """A column to choose by; of a defect what no column says is looked for in its record."""
+    columns = model.__table__.columns
+    if model is not DefectRow or name in columns:
+        return columns[name]
+    record: Any = columns["record"]
+    found: ColumnElement[Any] = (
+        record[("confidence", "value")].as_float() if name == "confidence" else record[name].as_string()
+    )
     return found
 
 

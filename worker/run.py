@@ -18,12 +18,13 @@ from core.fingerprint import digest_of_file
 from core.report.summary import stage_state
 from core.settings import Settings
 from store.db import Database, open_sqlite
+from store.environment import deployment_settings
 from store.graph import CORE_GRAPH, Graph
 from store.inspections import Inspections, input_digest
 from store.models import ACTIVE_INSPECTION, OVER_TASK
 from store.plan import Plan
 from store.records import InputFiles, InspectionView, TaskView
-from store.settings import DeploymentSettings, available_cores
+from store.settings import available_cores
 from worker.folder import RunFolder, locked
 from worker.local import LocalRunners, raise_failure
 from worker.logs import TaskLogs
@@ -127,7 +128,7 @@ class _Run:
     def __init__(
         self, folder: RunFolder, database: Database, graph: Graph, workers: int, on_event: OnEvent | None
     ) -> None:
-        deployment = DeploymentSettings()
+        deployment = deployment_settings()
         self._started = time.monotonic()
         self._folder = folder
         self._graph = graph

@@ -16,7 +16,7 @@ from api.problems import not_found, responses
 from api.services import Services
 from api.state import state_of
 from core.gallery.palette import RGB, label_colors
-from store.tables import DETECTIONS, RowFilter, read_rows
+from store.tables import DETECTIONS, RowFilter, labels, read_rows
 
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["results"])
 
@@ -53,8 +53,9 @@ def frame(
         if boxes:
             with services.results.open(f"{folder}/crop.json") as stream:
                 crop = json.load(stream)
+            # Colours are those of all labels, so that they are the same on every frame and in the gallery.
             rows = read_rows(services.db, inspection_id, DETECTIONS, RowFilter({"frame_index": number}))
-            picture = draw(picture, crop, list(rows), label_colors(_labels(services, inspection_id)))
+            picture = draw(picture, crop, rows, label_colors(labels(services.db, inspection_id)))
     except FileNotFoundError:
         raise not_found("frame") from None
     return Response(picture, media_type="image/jpeg")
@@ -64,11 +65,6 @@ def _folder(services: Services, inspection_id: str) -> str | None:
     """Where the result of the stage `frames` lies; None while there is none."""
     tasks = services.inspections.tasks(inspection_id)
     return next((task.path for task in tasks if task.key == "frames"), None)
-
-
-def _labels(services: Services, inspection_id: str) -> list[str]:
-    """Every label of the inspection, so that its colour is the same on every frame and in the gallery."""
-    return [str(row["label"]) for row in read_rows(services.db, inspection_id, DETECTIONS, RowFilter({}))]
 
 
 def draw(jpeg: bytes, crop: Mapping[str, int], rows: Sequence[Mapping[str, Any]], colors: Mapping[str, RGB]) -> bytes:

@@ -17,6 +17,7 @@ from api.caching import matches
 from api.creating import CREATE_BODY, asked_by_form, asked_by_json
 from api.finding import find_inspection, gone, is_id
 from api.intake import Asked, accept
+from api.paging import next_link
 from api.parameters import Text
 from api.problems import Refused, not_found, responses
 from api.state import State, state_of
@@ -175,8 +176,7 @@ def listing(
     page = list_inspections(services.db, chosen, limit, cursor)
     shown = Statuses(services.db, services.graph).read_many(page.rows)
     if page.cursor is not None:
-        target = request.url.include_query_params(cursor=page.cursor)
-        response.headers["Link"] = f'<{target.path}?{target.query}>; rel="next"'
+        response.headers["Link"] = next_link(request, page.cursor)
     return schemas.Inspections(
         inspections=[here.resources.resource(status) for status in shown], next_cursor=page.cursor
     )

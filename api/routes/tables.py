@@ -7,12 +7,14 @@ from collections.abc import Iterator, Mapping
 from http import HTTPStatus
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Header, Query, Request, Response
 
 from api import table_schemas as schemas
 from api.auth import CallerOf
+from api.caching import matches
 from api.finding import find_inspection
-from api.negotiation import CSV_RESPONSE, Format, table, wants_csv
+from api.negotiation import CSV_RESPONSE, Format, TableForm, table, wants_csv
+from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
 from api.parameters import Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
@@ -43,29 +45,35 @@ To = Annotated[Seconds | None, Query(description="seconds from the first frame: 
 
 
 def _answer(
-    request: Request, caller: CallerOf, inspection_id: str, what: Table, chosen: RowFilter, asked: str | None
+    request: Request, caller: CallerOf, inspection_id: str, what: Table, chosen: RowFilter, asked: Asked
 ) -> Response:
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
-    return table(request, asked, what.columns, read_rows(services.db, inspection_id, what, chosen))
+    source = Source(services.db, inspection_id, what, chosen)
+    as_csv = wants_csv(request, asked.format)
+    if what is DEFECTS:
+        form = TableForm(DEFECT_COLUMNS, as_csv=as_csv, flat=flat_defect)
+    else:
+        form = TableForm(what.columns, as_csv=as_csv)
+    return paged(request, source, form, asked)
 
 
 @router.get(
     "/cases",
     response_model=list[schemas.Case],
     summary="Every reconstruction case of the window search",
-    responses={**CSV_RESPONSE, **_ERRORS},
+    responses=TABLE_RESPONSES,
 )
 def cases(
     request: Request,
     caller: CallerOf,
     inspection_id: str,
+    asked: AskedFor,
     kind: Literal["coarse", "refine"] | None = None,
     status: Literal["succeeded", "no_model", "failed"] | None = None,
-    format: Format = None,
 ) -> Response:
     """Rows of cases.csv, so far as cases have ended."""
-    return _answer(request, caller, inspection_id, CASES, RowFilter({"kind": kind, "status": status}), format)
+    return _answer(request, caller, inspection_id, CASES, RowFilter({"kind": kind, "status": status}), asked)
 
 
 @router.get("/cases/{name}", summary="One case", responses=_ERRORS)
@@ -75,33 +83,34 @@ def case(request: Request, caller: CallerOf, inspection_id: str, name: str) -> s
     find_inspection(services, inspection_id, caller.owner)
     if "\0" in name:
         raise not_found("case")
-    row = next(read_rows(services.db, inspection_id, CASES, RowFilter({"name": name})), None)
-    if row is None:
+    rows = read_rows(services.db, inspection_id, CASES, RowFilter({"name": name}))
+    if not rows:
         raise not_found("case")
-    return schemas.Case.model_validate(row)
+    return schemas.Case.model_validate(rows[0])
 
 
 @router.get(
     "/metrics",
     response_model=list[schemas.Metric],
     summary="Every number that a stage found",
-    responses={**CSV_RESPONSE, **_ERRORS},
+    responses=TABLE_RESPONSES,
 )
-def metrics(request: Request, caller: CallerOf, inspection_id: str, format: Format = None) -> Response:
+def metrics(request: Request, caller: CallerOf, inspection_id: str, asked: AskedFor) -> Response:
     """Names are `<task key>.<fact>`."""
-    return _answer(request, caller, inspection_id, METRICS, RowFilter({}), format)
+    return _answer(request, caller, inspection_id, METRICS, RowFilter({}), asked)
 
 
 @router.get(
     "/detections",
     response_model=list[schemas.Detection],
     summary="One row per detection of the annotations",
-    responses={**CSV_RESPONSE, **_ERRORS},
+    responses=TABLE_RESPONSES,
 )
 def detections(
     request: Request,
     caller: CallerOf,
     inspection_id: str,
+    asked: AskedFor,
     outcome: Literal["mapped", "approximate", "unplaced"] | None = None,
     label: Label = None,
     blade: Blade = None,
@@ -109,91 +118,90 @@ def detections(
     min_confidence: Confidence = None,
     from_s: From = None,
     to_s: To = None,
-    format: Format = None,
 ) -> Response:
     """Rows of mapping/detections.csv, none dropped unless a filter says so."""
     equal = {"outcome": outcome, "label": label, "blade": blade, "defect_id": defect_id}
     chosen = RowFilter(equal, min_confidence, from_s, to_s)
-    return _answer(request, caller, inspection_id, DETECTIONS, chosen, format)
+    return _answer(request, caller, inspection_id, DETECTIONS, chosen, asked)
 
 
 @router.get(
     "/timeline",
     response_model=list[schemas.Event],
     summary="One row per event",
-    responses={**CSV_RESPONSE, **_ERRORS},
+    responses=TABLE_RESPONSES,
 )
 def timeline(
     request: Request,
     caller: CallerOf,
     inspection_id: str,
+    asked: AskedFor,
     label: Label = None,
     defect_id: Annotated[int | None, Query(ge=0, lt=2**31)] = None,
     min_confidence: Confidence = None,
     from_s: From = None,
     to_s: To = None,
-    format: Format = None,
 ) -> Response:
     """Rows of mapping/timeline.csv, by start."""
     chosen = RowFilter({"label": label, "defect_id": defect_id}, min_confidence, from_s, to_s)
-    return _answer(request, caller, inspection_id, TIMELINE, chosen, format)
+    return _answer(request, caller, inspection_id, TIMELINE, chosen, asked)
 
 
 @router.get(
     "/defects",
     response_model=list[schemas.Defect],
     summary="One record per physical defect",
-    responses={**CSV_RESPONSE, **_ERRORS},
+    responses=TABLE_RESPONSES,
 )
 def defects(
     request: Request,
     caller: CallerOf,
     inspection_id: str,
+    asked: AskedFor,
     label: Label = None,
     blade: Blade = None,
     min_confidence: Confidence = None,
-    format: Format = None,
 ) -> Response:
     """Records of mapping/defects.json; as CSV their lists are counted."""
-    services = state_of(request).services
-    find_inspection(services, inspection_id, caller.owner)
-    records = read_rows(services.db, inspection_id, DEFECTS, RowFilter({"label": label}))
-    chosen = _of_blade(records, blade, min_confidence)
-    if wants_csv(request, format):
-        return table(request, "csv", DEFECT_COLUMNS, (flat_defect(record) for record in chosen))
-    return table(request, "json", (), chosen)
-
-
-def _of_blade(
-    records: Iterator[dict[str, Any]], blade: str | None, min_confidence: float | None
-) -> Iterator[dict[str, Any]]:
-    """What no column of the table says is looked for in the record."""
-    for record in records:
-        confidence = flat_defect(record)["confidence"]
-        sure = min_confidence is None or (confidence is not None and confidence >= min_confidence)
-        if sure and blade in (None, record.get("blade")):
-            yield record
+    chosen = RowFilter({"label": label, "blade": blade}, min_confidence)
+    return _answer(request, caller, inspection_id, DEFECTS, chosen, asked)
 
 
 @router.get(
     "/quality",
     response_model=schemas.Quality,
     summary="How far the result can be trusted",
-    responses={**CSV_RESPONSE, **responses(401, 404, 409, 410, 503)},
+    responses={
+        **CSV_RESPONSE,
+        304: {"description": "it is the report that `If-None-Match` names"},
+        **responses(401, 404, 409, 410, 503),
+    },
 )
-def quality(request: Request, caller: CallerOf, inspection_id: str, format: Format = None) -> Response:
+def quality(
+    request: Request,
+    caller: CallerOf,
+    inspection_id: str,
+    format: Format = None,
+    if_none_match: Annotated[str | None, Header(description="an `ETag` that is at hand")] = None,
+) -> Response:
     """quality.json; as CSV its single values by dotted name. 409 until the inspection is over."""
     services = state_of(request).services
     row = find_inspection(services, inspection_id, caller.owner)
     artifact = ArtifactRows(services.db).find(inspection_id, "quality.json")
     if artifact is None:
         raise not_ready(row, "quality report")
+    as_csv = wants_csv(request, format)
+    headers = {"ETag": f'"{artifact.sha256}{"-csv" if as_csv else ""}"', "Vary": "Accept"}
+    if matches(if_none_match, headers["ETag"]):
+        return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
     with services.artifacts.open(artifact.key) as stream:
         data = stream.read()
-    if not wants_csv(request, format):
-        return Response(data, media_type="application/json", headers={"Vary": "Accept"})
+    if not as_csv:
+        return Response(data, media_type="application/json", headers=headers)
     values = ({"name": name, "value": value} for name, value in flattened(json.loads(data)))
-    return table(request, "csv", ("name", "value"), values)
+    answer = table(request, "csv", ("name", "value"), values)
+    answer.headers.update(headers)
+    return answer
 
 
 def not_ready(row: Inspection, what: str) -> Refused:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, get_args
 
 from pydantic import ValidationError
 
 from core.errors import BadInput
+from core.names import nearest
 from core.settings import groups
 from core.settings.base import Group, option
 
@@ -128,8 +128,8 @@ def make_settings(preset: str = "default", options: Mapping[str, Any] | None = N
     known = option_names()
     for name in chosen:
         if name not in known:
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else "; `bladeatlas options` lists all"
+            near = nearest(name, known)
+            hint = f"; did you mean '{near}'?" if near else "; `bladeatlas options` lists all"
             raise BadInput(f"unknown option '{name}'{hint}", where=name)
     tree: dict[str, Any] = {"preset": preset, "overrides": tuple(sorted(chosen))}
     for name, value in {**preset_values(preset), **chosen}.items():

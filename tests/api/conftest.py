@@ -112,7 +112,9 @@ def backend(tmp_path: Path) -> Iterator[Backend]:
 
 def client_of(backend: Backend, host: str = "127.0.0.1") -> TestClient:
     """A client on this machine; errors become answers, as behind a real server."""
-    return TestClient(create_app(backend.services), client=(host, 50000), raise_server_exceptions=False)
+    return TestClient(
+        create_app(backend.services), "http://127.0.0.1", client=(host, 50000), raise_server_exceptions=False
+    )
 
 
 @pytest.fixture

@@ -113,7 +113,7 @@ def test_unexpected_errors_are_problems_without_the_cause(backend: Backend) -> N
     def typed(number: int) -> int:
         return number
 
-    client = TestClient(app, client=("127.0.0.1", 1), raise_server_exceptions=False)
+    client = TestClient(app, "http://127.0.0.1", client=("127.0.0.1", 1), raise_server_exceptions=False)
     for path, status in (("/broken", 500), ("/away", 503)):
         answer = client.get(path)
         assert (answer.status_code, answer.headers["content-type"]) == (status, MEDIA_TYPE)

@@ -40,7 +40,10 @@ def test_with_keys_everybody_needs_one(backend: Backend) -> None:
         assert key not in answer.text
     assert client.get(f"/v1/inspections?key={key}").status_code == 401, "never in a query"
     Keys(backend.db).revoke(view.id)
-    assert client_of(backend).get("/v1/inspections", headers=good).status_code == 401
+    for client in (client_of(backend), client_of(backend, "::1")):
+        for headers in ({}, good):
+            answers = {path: client.get(path, headers=headers).status_code for path in PATHS}
+            assert answers == dict.fromkeys(PATHS, 401), "the last key is revoked: nobody is let in"
 
 
 def test_an_upload_of_another_key_is_not_found(backend: Backend) -> None:

@@ -39,19 +39,33 @@ def test_a_key_is_kept_as_a_hash_and_found_again(db: Database) -> None:
     assert ring.owner(mixed) is None
 
 
+def test_only_where_no_key_was_ever_made_there_is_none(db: Database) -> None:
+    keys = Keys(db)
+    ring = KeyRing(keys)
+    assert ring.ever_made, "until it was looked, nobody is let in without a key"
+    ring.refresh()
+    assert not ring.ever_made
+    keys.revoke(keys.create("inspector")[0].id)
+    restarted = Database(db.engine.url)
+    again = KeyRing(Keys(restarted))
+    again.refresh()
+    restarted.close()
+    assert again.ever_made
+
+
 def test_a_revoked_key_ends_within_a_moment(db: Database) -> None:
     keys, clock = Keys(db), Clock()
     view, key = keys.create("inspector")
     ring = KeyRing(keys, clock=clock)
     ring.refresh()
-    assert not ring.empty
+    assert ring.ever_made
     keys.revoke(view.id)
     assert ring.fresh
     clock.now = 1.1
     assert not ring.fresh
     ring.refresh()
     assert ring.owner(key) is None
-    assert ring.empty
+    assert ring.ever_made, "a revoked key is still one that was made"
     assert [found.revoked_at is not None for found in keys.all()] == [True]
     with pytest.raises(BadInput):
         keys.revoke("nobody")

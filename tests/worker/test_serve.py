@@ -11,10 +11,10 @@ from pathlib import Path
 import httpx
 import psutil
 import pytest
-from sqlalchemy import insert
 
 from store.db import open_sqlite
-from store.models import ApiKey, Inspection
+from store.keys import Keys
+from store.models import Inspection
 from tests.worker.deployment import Deployment, wait_for
 from tests.worker.disks import fill, mounted
 
@@ -156,13 +156,15 @@ def test_two_servers_do_not_share_a_folder(place: Deployment) -> None:
     assert "another server uses" in place.said(1)
 
 
-def test_without_keys_only_loopback_is_served(place: Deployment) -> None:
+def test_until_a_key_was_made_only_loopback_is_served(place: Deployment) -> None:
     refused = place.start("serve", "--host", "0.0.0.0", "--port", str(free_port()))
     assert refused.wait(30) == 2
-    assert "no API key" in place.said()
-    with place.db.write() as session:
-        values = {"id": "k", "name": "k", "digest": "0" * 64, "created_at": place.db.now(session)}
-        session.execute(insert(ApiKey).values(values))
+    assert "no API key was ever made" in place.said()
+    keys = Keys(place.db)
+    keys.revoke(keys.create("inspector")[0].id)
     port = free_port()
     place.start("serve", "--host", "0.0.0.0", "--port", str(port))
-    wait_for(lambda: _answers(f"http://127.0.0.1:{port}"))
+    address = f"http://127.0.0.1:{port}"
+    wait_for(lambda: _answers(address))
+    assert httpx.get(f"{address}/v1/inspections").status_code == 401, "the last key was revoked before it started"
+    assert '"event": "no_valid_key"' in place.said(1)

@@ -10,6 +10,8 @@ from pydantic import Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
 from sqlalchemy import URL
 
+from core.video.limits import MAX_FRAME_PIXELS
+
 
 class DeploymentSettings(BaseSettings):
     """Where things are kept and how work is leased; every field is one environment variable."""
@@ -42,6 +44,7 @@ class DeploymentSettings(BaseSettings):
     max_upload_bytes: int = Field(64 << 30, ge=1, description="largest upload")
     max_annotations_bytes: int = Field(128 << 20, ge=1, description="largest annotation file")
     max_active: int = Field(100, ge=1, description="inspections queued or running, at most; more get 429")
+    max_frame_pixels: int = Field(MAX_FRAME_PIXELS, ge=1, description="largest picture of a video, in pixels")
     probe_seconds: float = Field(60.0, gt=0, description="time limit of looking into an uploaded video")
     probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
 

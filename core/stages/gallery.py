@@ -56,7 +56,7 @@ def _write_frames(
     if not wanted and not shown:
         return
     last = max([*wanted, *shown])
-    with VideoReader(task.video) as reader:
+    with VideoReader(task.video, max_pixels=task.max_frame_pixels) as reader:
         for decoded in reader.frames():
             frame = wanted.get(decoded.index)
             quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]

@@ -14,7 +14,12 @@ def run(task: StageTask) -> StageResult:
     def on_frame(done: int, declared: int) -> None:
         task.report(done, max(done, declared), f"frame {done}")
 
-    table = probe_video(task.video, allow_truncated=task.settings.input.allow_truncated, on_frame=on_frame)
+    table = probe_video(
+        task.video,
+        allow_truncated=task.settings.input.allow_truncated,
+        max_pixels=task.max_frame_pixels,
+        on_frame=on_frame,
+    )
     table.write(task.out)
     info = table.info
     flags = []

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from core.errors import BadInput
 from core.files import require_file
+from core.video.limits import MAX_FRAME_PIXELS
 from core.video.orientation import Orientation
 
 _FORMATS = (
@@ -60,13 +61,14 @@ class VideoReader:
         time_base: seconds per unit of `pts`.
         declared_rate: frames per second as the container states them; None when it does not.
         declared_frames: 0 when unknown.
+        declared_s: length as the header states it; None where it states none.
         codec: name of the codec.
         damage: what was found broken so far, empty while nothing was.
         repaired_times: frames whose time was missing or not after the one before.
         orientation: known after the first frame.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, max_pixels: int = MAX_FRAME_PIXELS) -> None:
         require_file(path, "video")
         self.name = path.name
         try:
@@ -83,6 +85,7 @@ class VideoReader:
             ) from None
         try:
             self._stream = self._video_stream()
+            self._require_pixels(max_pixels)
         except BadInput:
             self._container.close()
             raise
@@ -91,6 +94,7 @@ class VideoReader:
         rate = self._stream.average_rate
         self.declared_rate = Fraction(rate) if rate else None
         self.declared_frames = int(self._stream.frames)
+        self.declared_s = self._declared_s()
         self.codec = str(self._stream.codec_context.name)
         self.damage: list[str] = []
         self.repaired_times = 0
@@ -117,6 +121,12 @@ class VideoReader:
         if self._container.streams.audio:
             raise BadInput(f"'{self.name}' holds only audio, no video", code="audio_only", where="video")
         raise BadInput(f"'{self.name}' holds no video", code="not_a_video", where="video")
+
+    def _require_pixels(self, max_pixels: int) -> None:
+        decoder = self._stream.codec_context
+        if decoder.width * decoder.height > max_pixels:
+            message = f"the pictures of '{self.name}' are {decoder.width}x{decoder.height}, more than the {max_pixels} "
+            raise BadInput(f"{message}pixels that are taken", code="too_many_pixels", where="video")
 
     def frames(self) -> Iterator[DecodedFrame]:
         """Frames in presentation order; damage is noted in `damage` and its frames are left out."""
@@ -235,11 +245,15 @@ class VideoReader:
 
     def missing_at_end_s(self) -> Fraction:
         """After the last frame: seconds that the header promises and the file does not hold; 0 when unknown."""
+        if self.declared_s is None:
+            return Fraction(0)
+        return max(Fraction(0), self.declared_s - (self._end_s - (self._first_s or Fraction(0))))
+
+    def _declared_s(self) -> Fraction | None:
         declared = self._container.duration
         if declared is None or not _DECLARING_FORMATS & set(self._container.format.name.split(",")):
-            return Fraction(0)
-        length = self._end_s - (self._first_s or Fraction(0))
-        return max(Fraction(0), Fraction(declared, av.time_base) - length)
+            return None
+        return Fraction(declared, av.time_base)
 
     def end_pts(self) -> int:
         """After the last frame: its time plus its duration as far as the file knows it."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from core.errors import BadInput
 from core.fingerprint import digest_of_file
 from core.video.decode import VideoReader
+from core.video.limits import MAX_FRAME_PIXELS
 from core.video.table import FrameRow, FrameTable, VideoInfo
 
 _END_TOLERANCE_S = Fraction(1, 2)
@@ -21,22 +22,29 @@ OnFrame = Callable[[int, int], None]
 """Called with (frames done, frames declared or 0)."""
 
 
-def probe_video(path: Path, *, allow_truncated: bool = False, on_frame: OnFrame | None = None) -> FrameTable:
+def probe_video(
+    path: Path,
+    *,
+    allow_truncated: bool = False,
+    max_pixels: int = MAX_FRAME_PIXELS,
+    on_frame: OnFrame | None = None,
+) -> FrameTable:
     """Decode all frames in one pass of constant memory and return the frame table.
 
     Args:
         path: the video.
         allow_truncated: take the decodable part of a damaged video instead of refusing it.
+        max_pixels: limit on the pixels of a picture.
         on_frame: progress; may raise to stop.
 
     Raises:
-        BadInput: `not_a_video`, `audio_only`, `unknown_codec`, `no_frames`, `single_frame`,
+        BadInput: `too_many_pixels`, `not_a_video`, `audio_only`, `unknown_codec`, `no_frames`, `single_frame`,
             `truncated_video`, `frame_size_changes`, `unsupported_rotation`, or a file error of
             `core.files.require_file`. Each message names cause and file.
     """
     rows: list[FrameRow] = []
     shape = (0, 0, 0)
-    with VideoReader(path) as reader:
+    with VideoReader(path, max_pixels=max_pixels) as reader:
         for frame in reader.frames():
             rgb = frame.rgb()
             shape = rgb.shape

@@ -6,6 +6,7 @@ import asyncio
 import time
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import httpx
@@ -55,6 +56,17 @@ class Flood:
             return answer, done
 
 
+def open_files() -> Counter[str]:
+    """What this process holds open, but for the database's files, which a pool of connections keeps."""
+    found: Counter[str] = Counter()
+    for descriptor in Path("/proc/self/fd").iterdir():
+        with suppress(FileNotFoundError):
+            target = str(descriptor.readlink())
+            if "bladeatlas.db" not in target:
+                found[target.split(":")[0]] += 1
+    return found
+
+
 def test_a_hundred_posts_of_one_owner_do_not_keep_another_waiting(
     backend: Backend, serve: Callable[[FastAPI], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -62,7 +74,7 @@ def test_a_hundred_posts_of_one_owner_do_not_keep_another_waiting(
     flood = Flood(backend.with_settings(max_probes_waiting_per_owner=40, probe_seconds=60), serve)
     httpx.get(f"{flood.address}/healthz")
     own = psutil.Process()
-    files = own.num_fds()
+    files = open_files()
     began = time.monotonic()
     answer, done = asyncio.run(flood.run(100, b"any bytes", waiting=40))
     assert answer.status_code == 202, answer.text
@@ -78,7 +90,7 @@ def test_a_hundred_posts_of_one_owner_do_not_keep_another_waiting(
     # All clients have gone: nobody waits for them any more, and nothing of theirs is left.
     wait_until(lambda: flood.turns.waiting == 0 and not own.children())
     wait_until(lambda: leftovers(backend) == [])
-    wait_until(lambda: own.num_fds() <= files)
+    wait_until(lambda: sum(open_files().values()) <= sum(files.values()))
     assert backend.db.engine.pool.checkedout() == 0  # type: ignore[attr-defined]
     assert len(rows(backend)) <= found[202] + 3, "a client that went away while it waited made no inspection"
     headers = flood.headers["many"]

@@ -17,7 +17,6 @@ from starlette.concurrency import run_in_threadpool
 from api.finding import is_id
 from api.forms import FormReader, Part
 from api.intake import Asked, LocalFile, invalid, parse_json, parse_parameters
-from api.limits import require_capacity, require_space
 from api.problems import FieldError, Refused, field_errors
 from api.receiving import body_of, on_disk
 from api.schemas import EXAMPLE_ID, Parameters
@@ -82,12 +81,10 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
         "parameters": MAX_PARAMETERS_BYTES,
     }
     # Refused before the body is read: a client that asked with `Expect: 100-continue` need not send it.
-    await run_in_threadpool(require_capacity, services)
-    announced = request.headers.get("content-length", "0")
-    require_space(services, int(announced) if announced.isdigit() else 0)
+    await run_in_threadpool(services.admission.look, owner)
     form = FormReader(services, limits)
     try:
-        parts = await form.read(request.headers["content-type"], body_of(request))
+        parts = await form.read(request.headers, owner, body_of(request))
         if "video" not in parts:
             raise invalid([FieldError(pointer="/video", detail="the part 'video' is missing")])
         parameters = parse_parameters(parts["parameters"].path.read_bytes()) if "parameters" in parts else Parameters()

@@ -16,6 +16,7 @@ from python_multipart.multipart import MultipartParser, parse_options_header
 
 from api.limits import require_space
 from api.problems import FieldError, Refused
+from api.promising import promised
 from api.receiving import PIECE, on_disk
 from api.services import Services
 from core.errors import DiskFull
@@ -85,25 +86,29 @@ class FormReader:
         self._disposition = b""
         self._ended = False
 
-    async def read(self, content_type: str, body: AsyncIterator[bytes]) -> dict[str, Part]:
-        """Take in the whole form.
+    async def read(self, headers: Mapping[str, str], owner: str, body: AsyncIterator[bytes]) -> dict[str, Part]:
+        """Take in the whole form; what its ``Content-Length`` promises counts against the disk meanwhile.
 
         Raises:
             Refused: 400 for what is no form or was cut off, 413 for a part above its limit, 422 for a part
                 that is not known or comes twice.
+            LimitReached, DiskFull: too many uploads are open, or there is no room for it.
         """
-        parser = MultipartParser(_boundary(content_type), callbacks=self._callbacks())
-        try:
-            async for chunk in body:
-                for start in range(0, len(chunk), PIECE):
-                    parser.write(chunk[start : start + PIECE])
-                    await self._flush(PIECE)
-                require_space(self._services)
-        except MultipartParseError as error:
-            raise _malformed(f"the form is malformed: {error}") from None
-        if not self._ended:
-            raise _malformed("the form was cut off before its end")
-        await self._flush(0)
+        parser = MultipartParser(_boundary(headers["content-type"]), callbacks=self._callbacks())
+        announced = headers.get("content-length", "")
+        async with promised(self._services.admission, owner, int(announced) if announced.isdigit() else 0) as promise:
+            try:
+                async for chunk in body:
+                    for start in range(0, len(chunk), PIECE):
+                        parser.write(chunk[start : start + PIECE])
+                        await self._flush(PIECE)
+                    await promise.arrived(len(chunk))
+                    require_space(self._services)
+            except MultipartParseError as error:
+                raise _malformed(f"the form is malformed: {error}") from None
+            if not self._ended:
+                raise _malformed("the form was cut off before its end")
+            await self._flush(0)
         return self.parts
 
     def discard(self) -> None:

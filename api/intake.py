@@ -12,19 +12,21 @@ from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
+from fastapi import Request
 from pydantic import ValidationError
 from sqlalchemy.exc import IntegrityError
 from starlette.concurrency import run_in_threadpool
 
-from api.limits import require_capacity, require_space
+from api.limits import require_space
 from api.problems import FieldError, Refused, field_errors, pointer
-from api.receiving import on_disk
+from api.receiving import on_disk, while_there
 from api.schemas import Parameters
 from api.services import Services
 from api.state import State
 from core.errors import BadInput
 from core.fingerprint import digest_of
 from core.settings import Settings, make_settings
+from store.admission import Place
 from store.idempotency import IdempotencyKeys
 from store.records import InputFiles
 
@@ -58,11 +60,12 @@ class Asked:
         )
 
 
-async def accept(state: State, asked: Asked) -> str:
+async def accept(state: State, asked: Asked, request: Request) -> str:
     """Make the inspection that was asked for, or find the one that the same request made before; its id.
 
     Raises:
-        Refused: 409 while the same request is under way, 422 for parameters, 429 when too many are active.
+        Refused: 409 while the same request is under way, 422 for parameters, 429 or 503 when too many wait.
+        LimitReached: too many are active.
         BadInput: the input cannot be used, or the key was used with another body.
         DiskFull: the disk has reached its reserve.
     """
@@ -71,10 +74,10 @@ async def accept(state: State, asked: Asked) -> str:
         known = await run_in_threadpool(_known, state.services, asked)
         if known is not None:
             return known
-        await run_in_threadpool(require_capacity, state.services)
+        await run_in_threadpool(state.services.admission.look, asked.owner)
         require_space(state.services)
         annotations = asked.annotations.path if asked.annotations else None
-        await state.prober.check(asked.video.path, annotations, settings)
+        await while_there(request, state.prober.check(asked.owner, asked.video.path, annotations, settings))
         return await on_disk(partial(_create, state.services, asked, settings))
 
 
@@ -153,10 +156,16 @@ def _known(services: Services, asked: Asked) -> str | None:
 
 
 def _create(services: Services, asked: Asked, settings: Settings) -> str:
+    with services.admission.place(asked.owner) as place:
+        return _create_in(services, asked, settings, place)
+
+
+def _create_in(services: Services, asked: Asked, settings: Settings, place: Place) -> str:
     inspection_id = uuid.uuid4().hex
     stored = _store_inputs(services, asked)
     try:
         with services.db.write() as session:
+            place.use(session)
             if asked.idempotency_key is not None:
                 keys = IdempotencyKeys(services.db)
                 keys.add(session, asked.owner, asked.idempotency_key, asked.digest(), inspection_id)

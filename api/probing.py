@@ -5,43 +5,62 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import signal
 import sys
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from api.turns import Turns
+from core.child_environment import child_environment
 from core.errors import BadInput, ResourceError, error_from_dict
 from core.settings import Settings
+from core.video.limits import VideoLimits
 from store.settings import DeploymentSettings
 
 _ENTRY = "core.intake"
 _SIDE_BY_SIDE = 2
-_ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+_PATIENCE = 3.0
+"""The limit is one of processor time; on the clock a busy machine may take so many times as long."""
 
 
 @dataclass
 class Prober:
-    """Runs at most a few checks at a time; the others wait their turn."""
+    """Runs at most a few checks at a time; the others wait their turn, which goes round the owners."""
 
     settings: DeploymentSettings
-    _turns: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(_SIDE_BY_SIDE))
+    turns: Turns = field(init=False)
+    _limits: VideoLimits = field(init=False)
 
-    async def check(self, video: Path, annotations: Path | None, settings: Settings) -> None:
+    def __post_init__(self) -> None:
+        settings = self.settings
+        self._limits = VideoLimits(settings.max_frame_pixels, settings.max_video_frames, settings.max_video_seconds)
+        self.turns = Turns(
+            _SIDE_BY_SIDE,
+            settings.max_probes_waiting,
+            settings.max_probes_waiting_per_owner,
+            settings.probe_wait_seconds,
+        )
+
+    async def check(self, owner: str, video: Path, annotations: Path | None, settings: Settings) -> None:
         """Return when the input can be used.
 
         Raises:
             BadInput: what is wrong with it, or that it took more time or memory than an input may.
-            ResourceError: the check could not be run.
+            ResourceError: the check could not be run, or not in time.
+            Refused: 429 or 503, too many wait already, or no turn came in time.
         """
         question = {
             "video": str(video),
             "annotations": str(annotations) if annotations else None,
+            "video_stream": settings.input.video_stream,
             "roi": settings.roi.model_dump(mode="json"),
+            "limits": asdict(self._limits),
             "parent": os.getpid(),
             "memory_bytes": self.settings.probe_memory_bytes,
             "seconds": self.settings.probe_seconds,
         }
-        async with self._turns:
+        async with self.turns.turn(owner):
             found = await self._ask(question)
         if "error" in found:
             raise error_from_dict(found["error"])
@@ -53,17 +72,22 @@ class Prober:
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,
-            env=_environment(),
+            env=child_environment(threads=1),
         )
         try:
-            async with asyncio.timeout(self.settings.probe_seconds):
+            async with asyncio.timeout(self.settings.probe_seconds * _PATIENCE):
                 said, _ = await process.communicate(json.dumps(question).encode())
         except TimeoutError:
-            raise BadInput("looking into the video took too long", code="probe_timeout", where="video") from None
+            # Its processor time was not used up: others had it, which is not the video's fault.
+            message = "the machine is too busy to look into the video; try again later"
+            raise ResourceError(message, code="probe_busy", where="video") from None
         finally:
             if process.returncode is None:
                 process.kill()
                 await process.wait()
+        if process.returncode == -signal.SIGXCPU:
+            message = f"looking into the video took more than {self.settings.probe_seconds:g} s (probe_seconds)"
+            raise BadInput(message, code="probe_timeout", where="video")
         return _understood(said, process.returncode)
 
 
@@ -78,9 +102,3 @@ def _understood(said: bytes, code: int | None) -> dict[str, Any]:
         raise BadInput(message, code="probe_died", where="video") from None
     assert isinstance(answer, dict)  # what `core.intake` prints
     return answer
-
-
-def _environment() -> dict[str, str]:
-    root = str(Path(__file__).resolve().parent.parent)
-    known = os.environ.get("PYTHONPATH", "")
-    return {**os.environ, **_ONE_THREAD, "PYTHONPATH": f"{root}{os.pathsep}{known}" if known else root}

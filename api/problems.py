@@ -15,6 +15,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
 from core.errors import BadInput, BladeAtlasError, Cancelled, DiskFull, NoReconstruction, ResourceError
+from store.admission import LimitReached
 from store.json_log import logger
 from store.upload_file import UploadLocked
 
@@ -22,6 +23,7 @@ MEDIA_TYPE = "application/problem+json"
 _STATUS: tuple[tuple[type[BladeAtlasError], HTTPStatus], ...] = (
     (BadInput, HTTPStatus.UNPROCESSABLE_ENTITY),
     (UploadLocked, HTTPStatus.LOCKED),
+    (LimitReached, HTTPStatus.TOO_MANY_REQUESTS),
     (NoReconstruction, HTTPStatus.CONFLICT),
     (Cancelled, HTTPStatus.CONFLICT),
     (DiskFull, HTTPStatus.INSUFFICIENT_STORAGE),
@@ -37,6 +39,12 @@ _RETRYABLE = {
     HTTPStatus.TOO_MANY_REQUESTS,
     HTTPStatus.SERVICE_UNAVAILABLE,
     HTTPStatus.INSUFFICIENT_STORAGE,
+}
+_WAIT_S = {
+    HTTPStatus.LOCKED: "1",
+    HTTPStatus.TOO_MANY_REQUESTS: "30",
+    HTTPStatus.SERVICE_UNAVAILABLE: "5",
+    HTTPStatus.INSUFFICIENT_STORAGE: "60",
 }
 _UNREACHABLE = "the database does not answer"
 
@@ -196,8 +204,7 @@ def _unexpected(request: Request, error: Exception) -> JSONResponse:
 
 
 def _later(status: HTTPStatus) -> dict[str, str]:
-    waits = {HTTPStatus.LOCKED: "1", HTTPStatus.SERVICE_UNAVAILABLE: "5", HTTPStatus.INSUFFICIENT_STORAGE: "60"}
-    return {"Retry-After": waits[status]} if status in waits else {}
+    return {"Retry-After": _WAIT_S[status]} if status in _WAIT_S else {}
 
 
 def request_id(request: Request) -> str:

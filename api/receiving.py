@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Coroutine
 from functools import partial
 from http import HTTPStatus
+from typing import Any, TypeVar
 
 from fastapi import Request
 from starlette.requests import ClientDisconnect
@@ -18,6 +19,8 @@ from api.state import State
 from api.threads import LimitedThreads
 from store.upload_file import UploadFile
 from store.uploads import UploadView
+
+T = TypeVar("T")
 
 PIECE = 1 << 20
 _COMMIT_EVERY_BYTES = 64 << 20
@@ -44,6 +47,29 @@ async def body_of(request: Request) -> AsyncIterator[bytes]:
             return
         if chunk:
             yield chunk
+
+
+async def while_there(request: Request, work: Coroutine[Any, Any, T]) -> T:
+    """Await `work` as long as the client of a request whose body was read is there; then it is cancelled.
+
+    Raises:
+        Refused: the client went away; nobody reads it.
+    """
+    working, going = asyncio.ensure_future(work), asyncio.ensure_future(_gone(request))
+    try:
+        await asyncio.wait((working, going), return_when=asyncio.FIRST_COMPLETED)
+        if working.done():
+            return working.result()
+        raise Refused(HTTPStatus.REQUEST_TIMEOUT, "client_gone", "the client went away before its turn came")
+    finally:
+        for task in (working, going):
+            task.cancel()
+        await asyncio.gather(working, going, return_exceptions=True)
+
+
+async def _gone(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
 
 
 class _Writer:

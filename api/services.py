@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from store.admission import Admission
 from store.artifacts import ArtifactStore
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph, load_graph
@@ -44,6 +45,11 @@ class Services:
     def uploads(self) -> Uploads:
         """Resumable uploads; their bytes lie on this machine until an inspection takes them."""
         return Uploads(self.db, self.settings.folder("uploads"), self.settings.upload_hours)
+
+    @property
+    def admission(self) -> Admission:
+        """Limits on what may begin."""
+        return Admission(self.db, self.settings)
 
     @property
     def logs(self) -> InspectionLogs:

@@ -8,6 +8,7 @@ from typing import Any
 
 from cli.parameters import parse_assignment
 from cli.probe import notes
+from cli.terminal import say, say_json
 from core.annotations.parse import load_annotations
 from core.annotations.placed import place
 from core.annotations.summary import AnnotationSummary, summarise
@@ -28,11 +29,11 @@ def command(parsed: argparse.Namespace) -> int:
     summary = summarise(annotations, placed)
     if parsed.json:
         found = {**summary.to_dict(), "video": None if video is None else video.to_dict()}
-        print(json.dumps({"schema_version": 1, **found}, indent=1, allow_nan=False))
+        say_json({"schema_version": 1, **found}, indent=1)
         return 0
-    print(f"{parsed.annotations.name}: {text(summary)}")
-    for note in () if video is None else notes(video):
-        print(f"  video: {note}")
+    times = f"{summary.n_keys_with_detections} of {summary.n_keys} times"
+    say(f"{parsed.annotations.name}: {summary.n_detections} detections at {times}", *lines(summary))
+    say(*(f"  video: {note}" for note in (() if video is None else notes(video))))
     return 0
 
 
@@ -45,28 +46,27 @@ def input_options(assignments: list[str]) -> InputSettings:
     return make_settings("default", options).input
 
 
-def text(summary: AnnotationSummary) -> str:
+def lines(summary: AnnotationSummary) -> list[str]:
     """The summary in a few lines."""
-    lines = [
-        f"{summary.n_detections} detections at {summary.n_keys_with_detections} of {summary.n_keys} times",
+    found = [
         f"  labels: {_counts(summary.detections_by_label)}",
         f"  masks: {_counts(summary.masks_by_label)}",
         f"  detections with an outline: {summary.n_with_polygon}, with a track: {summary.n_with_track}",
     ]
     if summary.first_time_s is not None:
-        lines.append(f"  times: {summary.first_time_s:.4f} to {summary.last_time_s:.4f} s")
+        found.append(f"  times: {summary.first_time_s:.4f} to {summary.last_time_s:.4f} s")
     if summary.n_annotated_frames is not None:
-        lines.append(
+        found.append(
             f"  in the video: {summary.n_annotated_frames} frames with detections, "
             f"{summary.n_keys_outside_video} times outside"
         )
     if summary.time_convention is not None:
-        lines += _times(summary.time_convention)
-    lines.append(f"  read as: {summary.convention}")
-    lines += [f"  warning: {warning}" for warning in summary.warnings]
+        found += _times(summary.time_convention)
+    found.append(f"  read as: {summary.convention}")
+    found += [f"  warning: {warning}" for warning in summary.warnings]
     if summary.n_warnings > len(summary.warnings):
-        lines.append(f"  and {summary.n_warnings - len(summary.warnings)} further warnings")
-    return "\n".join(lines)
+        found.append(f"  and {summary.n_warnings - len(summary.warnings)} further warnings")
+    return found
 
 
 def _times(read: dict[str, Any]) -> list[str]:

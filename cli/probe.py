@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from itertools import pairwise
 
 from cli.progress import duration
+from cli.terminal import say, say_json
 from core.video.probe import probe_video
 from core.video.table import FrameTable, VideoInfo
 
@@ -15,15 +15,16 @@ def command(parsed: argparse.Namespace) -> int:
     """Decode the whole video once and say what it holds; a damaged video is described, not refused."""
     table = probe_video(parsed.video, allow_truncated=True, stream=parsed.stream)
     if parsed.json:
-        print(json.dumps({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1, allow_nan=False))
+        say_json({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1)
         return 0
     info, gaps = table.info, _gaps(table)
-    print(f"{parsed.video.name}: {info.width}x{info.height}, {info.codec}, {info.n_frames} frames")
-    print(f"  duration {duration(info.duration_s)}, {float(info.average_rate):.4g} frames/s on average")
     steps = f"{gaps['min_step_s']:.4f} to {gaps['max_step_s']:.4f} s"
-    print(f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate")
-    for note in notes(info):
-        print(f"  {note}")
+    say(
+        f"{parsed.video.name}: {info.width}x{info.height}, {info.codec}, {info.n_frames} frames",
+        f"  duration {duration(info.duration_s)}, {float(info.average_rate):.4g} frames/s on average",
+        f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate",
+        *(f"  {note}" for note in notes(info)),
+    )
     return 0
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import math
 import os
 import resource
 import signal
@@ -23,6 +24,7 @@ from core.roi import crop_of
 from core.settings import Settings
 from core.settings.groups import RoiSettings
 from core.video.decode import VideoReader
+from core.video.limits import PIXELS_ONLY, VideoLimits
 
 _PR_SET_PDEATHSIG = 1
 
@@ -39,14 +41,34 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     check_roi(settings)
 
 
-def check_video(video: Path, stream: int | None = None) -> dict[str, Any]:
-    """Size and codec of a video; `BadInput` unless the file is one whose first frames decode."""
-    with VideoReader(video, stream) as reader:
+def check_video(video: Path, stream: int | None = None, limits: VideoLimits = PIXELS_ONLY) -> dict[str, Any]:
+    """Size and codec of a video; `BadInput` unless the file is one whose first frames decode.
+
+    What the header states is held against `limits` before a frame is decoded: `too_many_pixels`,
+    `too_many_frames`, `too_long`.
+
+    Args:
+        video: the file.
+        stream: number of the video stream; None takes the film.
+        limits: the largest video that is taken.
+    """
+    with VideoReader(video, stream, max_pixels=limits.max_frame_pixels) as reader:
+        _require_length(reader, limits)
         shapes = [frame.rgb().shape for frame in islice(reader.frames(), 2)]
         codec, declared = reader.codec, reader.declared_frames
     if not shapes:
         raise BadInput(f"the video '{video.name}' holds no frame that decodes", code="no_frames", where="video")
     return {"width": shapes[0][1], "height": shapes[0][0], "codec": codec, "declared_frames": declared}
+
+
+def _require_length(reader: VideoReader, limits: VideoLimits) -> None:
+    frames, seconds = reader.declared_frames, reader.declared_s
+    if frames > limits.max_video_frames:
+        message = f"the video has {frames} frames; at most {limits.max_video_frames} are taken (max_video_frames)"
+        raise BadInput(message, code="too_many_frames", where="video")
+    if seconds is not None and seconds > limits.max_video_seconds:
+        longest = f"at most {limits.max_video_seconds:g} s are taken (max_video_seconds)"
+        raise BadInput(f"the video lasts {float(seconds):.0f} s; {longest}", code="too_long", where="video")
 
 
 def check_roi(settings: Settings) -> None:
@@ -62,13 +84,16 @@ def answer(question: dict[str, Any]) -> dict[str, Any]:
     """Check what a question names.
 
     Args:
-        question: ``video`` and optionally ``annotations`` (paths), ``roi`` (shares).
+        question: ``video`` and optionally ``annotations`` (paths), ``video_stream``, ``roi`` (shares), ``limits``
+            (`VideoLimits`).
 
     Returns:
         ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
     """
     try:
-        found = check_video(Path(question["video"]))
+        found = check_video(
+            Path(question["video"]), question.get("video_stream"), VideoLimits(**question.get("limits", {}))
+        )
         crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
         path = question.get("annotations")
         annotations = load_annotations(Path(path) if path else None)
@@ -87,10 +112,11 @@ def limit_process(parent: int, memory_bytes: int, seconds: float) -> None:
     ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
     if os.getppid() != parent:
         os._exit(1)
-    processor_s = max(1, int(seconds))
+    processor_s = max(1, math.ceil(seconds))
+    # Above the soft limit comes SIGXCPU, which tells the parent why.
+    resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s + 1))
     for what, limit in (
         (resource.RLIMIT_AS, memory_bytes),
-        (resource.RLIMIT_CPU, processor_s),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, 64),

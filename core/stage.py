@@ -14,6 +14,7 @@ from typing import Any
 
 from core.errors import Cancelled, StageFailed
 from core.settings import Settings
+from core.video.limits import MAX_FRAME_PIXELS
 
 Facts = dict[str, Any]
 PIECE_MARK = "@"
@@ -58,6 +59,8 @@ class StageTask:
     """Existing empty folder; everything the stage writes lies below it."""
     threads: int = 1
     """How many threads the stage may use."""
+    max_frame_pixels: int = MAX_FRAME_PIXELS
+    """A limit of the deployment on the video's pictures."""
     progress: Callable[[float, str], None] = _no_progress
     """Called with a fraction in [0, 1] and a short message."""
     cancelled: Callable[[], bool] = field(default=lambda: False)

@@ -94,6 +94,14 @@ class Database:
         moment: datetime = session.execute(select(func.clock_timestamp())).scalar_one()
         return moment.astimezone(UTC)
 
+    def lock(self, session: Session, number: int) -> None:
+        """Wait for other transactions that hold this number, and hold it to the end of this one.
+
+        On SQLite one writing transaction follows the other anyway.
+        """
+        if not self.is_sqlite:
+            session.execute(select(func.pg_advisory_xact_lock(number)))
+
     def close(self) -> None:
         """Give all connections back."""
         self.engine.dispose()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,13 +64,21 @@ class Inspections:
         advance(session, self.graph, inspection, now)
 
     def reopen(
-        self, inspection_id: str, files: InputFiles, settings: Settings, *, ended_only: bool = False, **more: Any
+        self,
+        inspection_id: str,
+        files: InputFiles,
+        settings: Settings,
+        *,
+        ended_only: bool = False,
+        admit: Callable[[Session], None] | None = None,
+        **more: Any,
     ) -> None:
         """Plan an inspection anew, with other parameters, another input, or the same after a stop.
 
         The plan is rebuilt from nothing; finished fingerprints are taken up again, so only what changed is
         left to do, and failed tasks get a new chance. Old leases end: their results will be refused.
-        With `ended_only` an inspection that is not over is left alone; `more` are further columns.
+        With `ended_only` an inspection that is not over is left alone; `more` are further columns. `admit` is called
+        first in the transaction and may refuse.
 
         Raises:
             BadInput: `conflict` when a task is leased (cancel first, or take over leases of owners that are
@@ -78,6 +86,8 @@ class Inspections:
         """
         chosen = settings.model_dump(mode="json")
         with self.db.write() as session:
+            if admit is not None:
+                admit(session)
             inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
             tasks = session.scalars(select(Task).where(Task.inspection_id == inspection_id)).all()
             if any(task.state == "leased" for task in tasks) or (ended_only and inspection.state in ACTIVE_INSPECTION):

@@ -316,6 +316,21 @@ class Upload(Base):
     removed_at: Mapped[datetime | None]
 
 
+class Reservation(Base):
+    """What a request that is under way holds of a limit; see `store.admission`."""
+
+    __tablename__ = "reservations"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    owner: Mapped[str] = mapped_column(String(64), default="")
+    kind: Mapped[str] = mapped_column(String(16))
+    """inspection: a place among the active ones; upload: a form that comes in."""
+    bytes: Mapped[int] = mapped_column(BigInteger, default=0)
+    """Still to be written."""
+    expires_at: Mapped[datetime] = mapped_column(index=True)
+    """Counts until then: what a killed process held is given back."""
+
+
 class Artifact(Base):
     """A published file of an inspection."""
 

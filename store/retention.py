@@ -14,12 +14,24 @@ from sqlalchemy import delete, or_, select
 
 from store.db import Database
 from store.leasing import lock_inspection
-from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Result, Task, Upload, Worker
+from store.models import (
+    ACTIVE_INSPECTION,
+    Artifact,
+    IdempotencyKey,
+    Inspection,
+    Reservation,
+    Result,
+    Task,
+    Upload,
+    Worker,
+)
 from store.publishing import artifact_prefix
 from store.rows import clear_rows
 
 _IDEMPOTENCY_DAYS = 3
 _WORKER_DAYS = 1
+_UPLOAD_DAYS = 3
+"""A removed upload's id answers 410 so long."""
 
 
 @dataclass(frozen=True)
@@ -131,12 +143,14 @@ class Retention:
             return set(session.scalars(select(Upload.id).where(Upload.removed_at.is_(None))))
 
     def tidy(self) -> None:
-        """Forget requests that nobody repeats any more, and workers that have not been seen for a day."""
+        """Forget what nobody asks for any more: old requests, absent workers, removed uploads, ended reservations."""
         with self.db.write() as session:
             now = self.db.now(session)
             old, unseen = now - timedelta(days=_IDEMPOTENCY_DAYS), now - timedelta(days=_WORKER_DAYS)
             session.execute(delete(IdempotencyKey).where(IdempotencyKey.created_at < old))
             session.execute(delete(Worker).where(Worker.seen_at < unseen))
+            session.execute(delete(Upload).where(Upload.removed_at < now - timedelta(days=_UPLOAD_DAYS)))
+            session.execute(delete(Reservation).where(Reservation.expires_at < now))
 
 
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))

@@ -10,6 +10,8 @@ from pydantic import Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
 from sqlalchemy import URL
 
+from core.video.limits import MAX_FRAME_PIXELS
+
 
 class DeploymentSettings(BaseSettings):
     """Where things are kept and how work is leased; every field is one environment variable."""
@@ -42,8 +44,17 @@ class DeploymentSettings(BaseSettings):
     max_upload_bytes: int = Field(64 << 30, ge=1, description="largest upload")
     max_annotations_bytes: int = Field(128 << 20, ge=1, description="largest annotation file")
     max_active: int = Field(100, ge=1, description="inspections queued or running, at most; more get 429")
-    probe_seconds: float = Field(60.0, gt=0, description="time limit of looking into an uploaded video")
+    max_active_per_owner: int = Field(50, ge=1, description="the same of one owner")
+    max_open_uploads: int = Field(1000, ge=1, description="unfinished uploads and forms, at most; more get 429")
+    max_open_uploads_per_owner: int = Field(100, ge=1, description="the same of one owner")
+    max_frame_pixels: int = Field(MAX_FRAME_PIXELS, ge=1, description="largest picture of a video, in pixels")
+    max_video_frames: int = Field(500_000, ge=1, description="frames that a video's header may state")
+    max_video_seconds: float = Field(21_600.0, gt=0, description="length that a video's header may state, in seconds")
+    probe_seconds: float = Field(8.0, gt=0, description="processor time to look into an uploaded video")
     probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
+    probe_wait_seconds: float = Field(60.0, gt=0, description="who waits longer for such a look gets 503")
+    max_probes_waiting: int = Field(200, ge=0, description="requests that wait for such a look, at most; more get 503")
+    max_probes_waiting_per_owner: int = Field(50, ge=0, description="the same of one owner; more get 429")
 
     trusted_hosts: str = Field(
         "", description="names that the server goes by, separated by commas; empty = any. Only with API keys"

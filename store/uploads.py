@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy import update
+from sqlalchemy.orm import Session
 
 from store.db import Database
 from store.disk import sync_path
@@ -57,13 +58,34 @@ class Uploads:
         self.folder.mkdir(parents=True, exist_ok=True)
         return self.folder / f"{_PART}{uuid.uuid4().hex}"
 
-    def create(self, owner: str, length: int, metadata: Mapping[str, str]) -> UploadView:
-        """A new upload of `length` bytes. The file is there before the row, so that a row never lacks its file."""
+    def create(
+        self, owner: str, length: int, metadata: Mapping[str, str], admit: Callable[[Session], None] | None = None
+    ) -> UploadView:
+        """A new upload of `length` bytes. The file is there before the row, so that a row never lacks its file.
+
+        `admit` is called in the transaction that makes the row; what it raises leaves nothing behind.
+        """
         upload_id = uuid.uuid4().hex
         self.folder.mkdir(parents=True, exist_ok=True)
         self.path(upload_id).touch(mode=0o600, exist_ok=False)
-        sync_path(self.folder)
+        try:
+            sync_path(self.folder)
+            return self._insert(upload_id, owner, length, metadata, admit)
+        except BaseException:
+            self.path(upload_id).unlink(missing_ok=True)
+            raise
+
+    def _insert(
+        self,
+        upload_id: str,
+        owner: str,
+        length: int,
+        metadata: Mapping[str, str],
+        admit: Callable[[Session], None] | None,
+    ) -> UploadView:
         with self.db.write() as session:
+            if admit is not None:
+                admit(session)
             now = self.db.now(session)
             row = Upload(
                 id=upload_id,

@@ -121,6 +121,7 @@ def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) 
         annotations=Path(spec["annotations"]) if spec["annotations"] else None,
         out=out,
         threads=spec["threads"],
+        max_frame_pixels=spec["max_frame_pixels"],
         progress=channel.progress,
         cancelled=cancelled,
     )

@@ -18,12 +18,12 @@ from typing import Any, Literal
 
 import psutil
 
+from core.child_environment import child_environment
 from core.errors import BladeAtlasError, ResourceError, error_from_dict
 
 _POLL_S = 0.2
 _GRACE_S = 2.0
 """Between the request to stop and the kill: nothing of an unfinished task is worth waiting longer for."""
-_THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 StopReason = Literal["", "interrupted", "cancelled", "lost"]
 
@@ -64,7 +64,7 @@ class TaskProcess:
                     stderr=subprocess.STDOUT,
                     pass_fds=(write,),
                     start_new_session=True,
-                    env=_environment(int(spec["threads"])),
+                    env=child_environment(int(spec["threads"])),
                 )
         except BaseException:
             os.close(self._read)
@@ -169,19 +169,6 @@ class TaskProcess:
             return ResourceError("the system killed the task for lack of memory", code="oom", where=self._key)
         how = signal.Signals(number).name if number else f"exit code {self._process.returncode}"
         return ResourceError(f"the task's process died ({how})", code="worker_lost", where=self._key)
-
-
-def _environment(threads: int) -> dict[str, str]:
-    """The child's environment: thread counts as leased, and this program importable."""
-    root = str(Path(__file__).resolve().parent.parent)
-    known = os.environ.get("PYTHONPATH", "")
-    return {
-        **os.environ,
-        **dict.fromkeys(_THREAD_VARIABLES, str(threads)),
-        "PYTHONPATH": f"{root}{os.pathsep}{known}" if known else root,
-        "PYTHONHASHSEED": "0",
-        "PYTHONUNBUFFERED": "1",
-    }
 
 
 def _kernel_oom_kills() -> int:

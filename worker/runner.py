@@ -14,6 +14,7 @@ from typing import Any, Protocol, TypeVar
 
 from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
+from core.video.limits import MAX_FRAME_PIXELS
 from store.artifacts import UNREACHABLE
 from store.disk import NO_SPACE
 from store.inputs import LocalInputs
@@ -69,6 +70,7 @@ class TaskRunner:
     memory_limit_bytes: int = 0
     limit_s: float = math.inf
     """A task that runs longer is ended."""
+    max_frame_pixels: int = MAX_FRAME_PIXELS
     interrupted: threading.Event = field(default_factory=threading.Event)
     held: dict[int, Held] = field(default_factory=dict)
 
@@ -148,6 +150,7 @@ class TaskRunner:
             "video": str(self.inputs.video(lease.files, needed=stage.reads_video)),
             "annotations": str(annotations) if annotations else None,
             "out": str(temporary),
+            "max_frame_pixels": self.max_frame_pixels,
             "threads": 1 if stage.fan_out else settings.compute.threads or available_cores(),
         }
 

@@ -114,6 +114,7 @@ class WorkerService:
             self.inputs,
             self.settings.task_memory_bytes,
             self.settings.task_seconds,
+            self.settings.max_frame_pixels,
         )
 
     def start(self) -> None:

@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from api.auth import CallerOf
 from api.finding import find_inspection
 from api.intake import settings_of
-from api.limits import require_capacity, require_space
+from api.limits import require_space
 from api.problems import FieldError, Refused, pointer, responses
 from api.routes.inspections import represent
 from api.schemas import Parameters, Resource
@@ -89,11 +89,14 @@ def _retry(services: Services, inspection_id: str, owner: str, asked: Retry) -> 
         raise Refused(HTTPStatus.CONFLICT, "active", "the inspection is not over; cancel it first")
     _require_stage(services, asked.from_stage)
     settings, changes = _settings(row, asked.parameters)
-    require_capacity(services)
     require_space(services)
-    if asked.from_stage != AUTO:
-        _remove_results(services.results, forget_from(services.inspections, inspection_id, asked.from_stage))
-    services.inspections.reopen(inspection_id, input_files(row), settings, ended_only=True, **changes)
+    # The place is held first: a retry that is refused must not have cost results.
+    with services.admission.place(owner) as place:
+        if asked.from_stage != AUTO:
+            _remove_results(services.results, forget_from(services.inspections, inspection_id, asked.from_stage))
+        services.inspections.reopen(
+            inspection_id, input_files(row), settings, ended_only=True, admit=place.use, **changes
+        )
     services.wake(inspection_id)
 
 

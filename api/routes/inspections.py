@@ -66,7 +66,7 @@ async def create(
     """Take a video, its annotations and parameters, or the names of finished uploads, and queue the work."""
     state = state_of(request)
     async with _asked(request, state, caller, idempotency_key) as asked:
-        inspection_id = await accept(state, asked)
+        inspection_id = await accept(state, asked, request)
     state.watcher.forget(inspection_id)
     return await represent(state, inspection_id, caller, status=HTTPStatus.ACCEPTED)
 
@@ -75,6 +75,7 @@ async def create(
 async def _asked(request: Request, state: State, caller: Caller, key: str | None) -> AsyncIterator[Asked]:
     kind = request.headers.get("content-type", "").split(";")[0].strip().lower()
     if kind == "multipart/form-data":
+        state.prober.turns.require_room(caller.owner)
         async with asked_by_form(request, state.services, caller.owner, key) as asked:
             yield asked
     elif kind == "application/json":

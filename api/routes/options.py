@@ -116,6 +116,16 @@ class Limits(BaseModel):
                 "max_parameters_bytes": 1048576,
                 "max_json_bytes": 8388608,
                 "max_active": 100,
+                "max_active_per_owner": 50,
+                "max_open_uploads": 1000,
+                "max_open_uploads_per_owner": 100,
+                "max_frame_pixels": 40000000,
+                "max_video_frames": 500000,
+                "max_video_seconds": 21600.0,
+                "probe_seconds": 8.0,
+                "probe_wait_seconds": 60.0,
+                "max_probes_waiting": 200,
+                "max_probes_waiting_per_owner": 50,
                 "upload_hours": 72.0,
                 "retention_days": 30.0,
             }
@@ -127,6 +137,16 @@ class Limits(BaseModel):
     max_parameters_bytes: int = Field(description="largest `parameters` of a form")
     max_json_bytes: int = Field(description="largest JSON body")
     max_active: int = Field(description="inspections queued or running at once; more get 429")
+    max_active_per_owner: int = Field(description="the same of one owner")
+    max_open_uploads: int = Field(description="unfinished uploads, and forms that come in, at once; more get 429")
+    max_open_uploads_per_owner: int = Field(description="the same of one owner")
+    max_frame_pixels: int = Field(description="largest picture of a video in pixels; larger ones get 422")
+    max_video_frames: int = Field(description="frames that a video's header may state; more get 422")
+    max_video_seconds: float = Field(description="length that a video's header may state; longer ones get 422")
+    probe_seconds: float = Field(description="processor time to look into a video; beyond it is 422")
+    probe_wait_seconds: float = Field(description="who waits longer for that look gets 503")
+    max_probes_waiting: int = Field(description="requests that wait for that look at once; more get 503")
+    max_probes_waiting_per_owner: int = Field(description="the same of one owner; more get 429")
     upload_hours: float = Field(description="an upload that nobody used is removed after this")
     retention_days: float = Field(description="an inspection is removed so long after it ended; 0 = never")
 
@@ -141,6 +161,16 @@ def limits(request: Request) -> Limits:
         max_parameters_bytes=MAX_PARAMETERS_BYTES,
         max_json_bytes=MAX_INLINE_BYTES,
         max_active=settings.max_active,
+        max_active_per_owner=settings.max_active_per_owner,
+        max_open_uploads=settings.max_open_uploads,
+        max_open_uploads_per_owner=settings.max_open_uploads_per_owner,
+        max_frame_pixels=settings.max_frame_pixels,
+        max_video_frames=settings.max_video_frames,
+        max_video_seconds=settings.max_video_seconds,
+        probe_seconds=settings.probe_seconds,
+        probe_wait_seconds=settings.probe_wait_seconds,
+        max_probes_waiting=settings.max_probes_waiting,
+        max_probes_waiting_per_owner=settings.max_probes_waiting_per_owner,
         upload_hours=settings.upload_hours,
         retention_days=settings.retention_days,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 from collections.abc import Mapping
+from functools import partial
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -13,7 +14,6 @@ from starlette.concurrency import run_in_threadpool
 
 from api.auth import CallerOf
 from api.finding import is_id
-from api.limits import require_space
 from api.problems import Refused, not_found, responses
 from api.receiving import receive_patch
 from api.state import state_of
@@ -67,7 +67,7 @@ def capabilities(request: Request) -> Response:
     dependencies=_TUS,
     responses={
         201: {"description": "made; `Location` is where to send the bytes"},
-        **responses(400, 401, 412, 413, 507),
+        **responses(400, 401, 412, 413, 429, 507),
     },
 )
 def create(
@@ -78,15 +78,15 @@ def create(
         str | None, Header(description="`name base64,name base64`", examples=["filename dHVyYmluZS5tcDQ="])
     ] = None,
 ) -> Response:
-    """Make an upload of a known size; 413 when it is larger than the server takes, 507 when the disk is."""
+    """Make an upload of a known size; 413 and 507 when the server or its disk do not take it, 429 beyond a limit."""
     services = state_of(request).services
     length = _number(upload_length, "Upload-Length")
     if length > services.settings.max_upload_bytes:
         detail = f"at most {services.settings.max_upload_bytes} bytes are taken"
         raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "too_large", detail, where="Upload-Length")
     metadata = _metadata(upload_metadata or "")
-    require_space(services, length)
-    upload = services.uploads.create(caller.owner, length, metadata)
+    admit = partial(services.admission.admit_upload, owner=caller.owner, size=length)
+    upload = services.uploads.create(caller.owner, length, metadata, admit)
     return _answer(HTTPStatus.CREATED, {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": "0"})
 
 

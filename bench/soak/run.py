@@ -59,6 +59,7 @@ class SoakSettings:
             # Faults fall on the same task more often here than a task that is at fault itself would need.
             "MAX_ATTEMPTS": "100",
             "MAX_ACTIVE": str(self.jobs + 10),
+            "MAX_ACTIVE_PER_OWNER": str(self.jobs + 10),
             "STALE_S": "5",
             "SWEEP_S": "1",
         }

@@ -79,9 +79,11 @@ def as_list_or_null(value: Any, path: str) -> list[Any]:
 
 
 def as_label(value: Any, path: str) -> str:
-    """`value` if it is a text with something in it that UTF-8 can hold."""
+    """`value` if it is a text with something in it that UTF-8 and a database can hold."""
     if not isinstance(value, str) or not value.strip():
         raise invalid(path, f"must be a text that is not empty, not {shown(value)}")
+    if "\0" in value:
+        raise invalid(path, "holds the character NUL, which no database keeps")
     try:
         value.encode("utf-8")
     except UnicodeEncodeError:

@@ -38,6 +38,7 @@ def run(task: StageTask) -> StageResult:
         crop,
         images,
         jpeg_quality=settings.frames.jpeg_quality,
+        max_pixels=task.max_frame_pixels,
         on_frame=lambda done: task.report(done, until, f"frame {done} of {until}"),
     )
     rows = [

@@ -93,7 +93,7 @@ def _write_frames(
     last = max([*pictures, *evidence])
     quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
     stream = FrameTable.read(task.input("probe")).info.stream
-    with VideoReader(task.video, stream) as reader:
+    with VideoReader(task.video, stream, max_pixels=task.max_frame_pixels) as reader:
         for decoded in reader.frames():
             picture = pictures.get(decoded.index)
             if picture is not None:

@@ -16,7 +16,11 @@ def run(task: StageTask) -> StageResult:
 
     settings = task.settings.input
     table = probe_video(
-        task.video, allow_truncated=settings.allow_truncated, stream=settings.video_stream, on_frame=on_frame
+        task.video,
+        allow_truncated=settings.allow_truncated,
+        stream=settings.video_stream,
+        max_pixels=task.max_frame_pixels,
+        on_frame=on_frame,
     )
     table.write(task.out)
     info = table.info

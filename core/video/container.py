@@ -16,9 +16,6 @@ from av.stream import Disposition
 from core.errors import BadInput
 from core.files import require_file
 
-MAX_FRAME_PIXELS = 40_000_000
-"""Pixels of one picture: more than 8K (33 million), less than what makes a few kilobytes into hours of work."""
-
 _FORMATS = (
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,flv,asf,ogg,mxf,ivf,h264,hevc,m4v,mjpeg,mpegvideo,"
     "wav,mp3,aac,flac"

@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 
 from core.errors import BadInput
 from core.video.clock import PresentationClock
-from core.video.container import MAX_FRAME_PIXELS, film_of, open_container, require_pixels
+from core.video.container import film_of, open_container, require_pixels
+from core.video.limits import MAX_FRAME_PIXELS
 from core.video.orientation import Orientation
 from core.video.soundness import Loss, Sent, SoundFrames, shows_picture
 
@@ -68,6 +69,7 @@ class VideoReader:
         time_base: seconds per unit of `pts`.
         declared_rate: frames per second as the container states them; None when it does not.
         declared_frames: 0 when unknown.
+        declared_s: length as the header states it; None where it states none.
         codec: name of the codec.
         faults: what was found broken in the file so far, in words.
         orientation: known after the first frame.
@@ -101,6 +103,7 @@ class VideoReader:
         self._video_end = 0
         self._chunk = -1
         self._format = set(self._container.format.name.split(","))
+        self.declared_s = self._declared_s()
         self._listed = len(self._stream.index_entries) if self._format & _INDEXED_FORMATS else 0
 
     def __enter__(self) -> VideoReader:
@@ -244,11 +247,15 @@ class VideoReader:
 
     def missing_at_end_s(self) -> Fraction:
         """After the last frame: seconds that the header promises and the file does not hold; 0 when unknown."""
+        if self.declared_s is None:
+            return Fraction(0)
+        return max(Fraction(0), self.declared_s - (self._end_s - (self._first_s or Fraction(0))))
+
+    def _declared_s(self) -> Fraction | None:
         declared = self._container.duration
         if declared is None or not _DECLARING_FORMATS & self._format:
-            return Fraction(0)
-        length = self._end_s - (self._first_s or Fraction(0))
-        return max(Fraction(0), Fraction(declared, av.time_base) - length)
+            return None
+        return Fraction(declared, av.time_base)
 
     def end_pts(self) -> int:
         """After the last frame: its time plus its duration as far as the file knows it."""

@@ -14,6 +14,7 @@ from core.errors import StageFailed
 from core.roi import Crop
 from core.sampling import ChosenFrame
 from core.video.decode import VideoReader
+from core.video.limits import MAX_FRAME_PIXELS
 from core.video.table import FrameTable
 
 
@@ -30,6 +31,7 @@ def export_frames(
     folder: Path,
     *,
     jpeg_quality: int,
+    max_pixels: int = MAX_FRAME_PIXELS,
     on_frame: Callable[[int], None] | None = None,
 ) -> None:
     """Write the crop of every chosen frame to `folder`, as decoded, without resizing.
@@ -44,6 +46,7 @@ def export_frames(
         crop: the part of them.
         folder: existing folder for ``0000.jpg`` ...
         jpeg_quality: 0-100.
+        max_pixels: limit on the pixels of a picture.
         on_frame: called with the number of decoded frames; may raise to stop.
 
     Raises:
@@ -51,7 +54,7 @@ def export_frames(
     """
     by_source = {frame.source_index: frame.index for frame in chosen}
     left = len(by_source)
-    with VideoReader(video, table.info.stream) as reader:
+    with VideoReader(video, table.info.stream, max_pixels=max_pixels) as reader:
         for frame in reader.frames():
             index = by_source.get(frame.index)
             if index is not None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from core.errors import BadInput
 from core.fingerprint import digest_of_file
 from core.video.decode import VideoReader
+from core.video.limits import MAX_FRAME_PIXELS
 from core.video.soundness import Loss
 from core.video.table import FrameRow, FrameTable, VideoInfo
 
@@ -25,7 +26,12 @@ OnFrame = Callable[[int, int], None]
 
 
 def probe_video(
-    path: Path, *, allow_truncated: bool = False, stream: int | None = None, on_frame: OnFrame | None = None
+    path: Path,
+    *,
+    allow_truncated: bool = False,
+    stream: int | None = None,
+    max_pixels: int = MAX_FRAME_PIXELS,
+    on_frame: OnFrame | None = None,
 ) -> FrameTable:
     """Decode all frames in one pass of constant memory and return the frame table.
 
@@ -33,6 +39,7 @@ def probe_video(
         path: the video.
         allow_truncated: take the decodable part of a damaged video instead of refusing it.
         stream: number of the video stream; None takes the film.
+        max_pixels: limit on the pixels of a picture.
         on_frame: progress; may raise to stop.
 
     Raises:
@@ -42,7 +49,7 @@ def probe_video(
     """
     rows: list[FrameRow] = []
     shape = (0, 0, 0)
-    with VideoReader(path, stream) as reader:
+    with VideoReader(path, stream, max_pixels=max_pixels) as reader:
         for frame in reader.frames():
             rgb = frame.rgb()
             shape = rgb.shape

@@ -6,12 +6,14 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from core.intake import answer
+from core.video.decode import DecodedFrame, VideoReader
 
 ROOT = Path(__file__).parents[2]
 VIDEO = ROOT / "samples" / "turbine.mp4"
@@ -38,6 +40,51 @@ def test_a_sound_input_is_described() -> None:
 def test_what_is_wrong_is_named(change: dict[str, Any], code: str) -> None:
     found = answer({"video": str(VIDEO), "annotations": None, "roi": FULL, **change})
     assert found["error"]["code"] == code
+
+
+BIG = ROOT / "tests" / "data" / "inputs" / "big180.mp4"
+
+
+@pytest.mark.parametrize(
+    ("video", "limits", "code"),
+    [
+        (BIG, {}, "too_many_pixels"),
+        (VIDEO, {"max_frame_pixels": 960 * 720 - 1}, "too_many_pixels"),
+        (VIDEO, {"max_video_frames": 95}, "too_many_frames"),
+        (VIDEO, {"max_video_seconds": 7.9}, "too_long"),
+    ],
+)
+def test_a_header_beyond_a_limit_is_enough(
+    video: Path, limits: dict[str, float], code: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def decode(_: VideoReader) -> None:
+        pytest.fail("a frame was decoded")
+
+    monkeypatch.setattr(VideoReader, "frames", decode)
+    found = answer({"video": str(video), "annotations": None, "roi": FULL, "limits": limits})
+    assert found["error"]["code"] == code
+    assert "at most" in found["error"]["message"] or "more than" in found["error"]["message"]
+
+
+def test_a_video_at_its_limits_is_taken() -> None:
+    limits = {"max_frame_pixels": 960 * 720, "max_video_frames": 96, "max_video_seconds": 8.0}
+    found = answer({"video": str(VIDEO), "annotations": None, "roi": FULL, "limits": limits})
+    assert found["video"]["declared_frames"] == 96
+
+
+def test_only_the_first_frames_are_decoded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However long the film is."""
+    seen: list[int] = []
+    frames = VideoReader.frames
+
+    def counted(reader: VideoReader) -> Iterator[DecodedFrame]:
+        for frame in frames(reader):
+            seen.append(frame.index)
+            yield frame
+
+    monkeypatch.setattr(VideoReader, "frames", counted)
+    answer({"video": str(VIDEO), "annotations": None, "roi": FULL})
+    assert seen == [0, 1]
 
 
 def ask(**change: Any) -> subprocess.CompletedProcess[str]:

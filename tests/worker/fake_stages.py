@@ -110,6 +110,8 @@ def _behave(task: StageTask) -> None:
     _note(task, "start")
     if starts >= wish.get("times", 1000):
         return
+    if wish.get("tell"):
+        (task.video.parent / "told.json").write_text(json.dumps(_what_a_child_knows()))
     if wish.get("helper"):
         helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(100)"])
         _note(task, f"helper {helper.pid}")
@@ -129,6 +131,21 @@ def _behave(task: StageTask) -> None:
     }
     if "raise" in wish:
         raise errors[wish["raise"]]
+
+
+def _what_a_child_knows() -> dict[str, Any]:
+    """Everything that this process and its guard were given: environments, also as they began, and the document."""
+    frame = sys._getframe()
+    while "spec" not in frame.f_locals:
+        assert frame.f_back is not None
+        frame = frame.f_back
+    return {
+        "environment": dict(os.environ),
+        "document": frame.f_locals["spec"],
+        "initial": Path("/proc/self/environ").read_text(),
+        "guard": Path(f"/proc/{os.getppid()}/environ").read_text(),
+        "arguments": Path(f"/proc/{os.getppid()}/cmdline").read_text(),
+    }
 
 
 def _pass_time(task: StageTask, seconds: float, deaf: bool) -> None:

@@ -167,6 +167,13 @@ def test_null_instead_of_a_list_is_an_empty_list():
             parse_annotations({"1": {"detections": wrong}})
 
 
+def test_a_text_that_no_database_keeps_is_refused_where_it_stands():
+    box = {"bbox": [0.1, 0.1, 0.2, 0.2]}
+    for member in ({"label": "de\0nt"}, {"label": "dent", "track_id": "\0"}):
+        with pytest.raises(BadInput, match=r'"1"\.detections\[0\]\.(label|track_id) holds the character NUL'):
+            parse_annotations({"1": {"detections": [{**box, **member}]}})
+
+
 @settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(JSON_VALUES | st.dictionaries(TIMES, ENTRIES | JSON_VALUES, max_size=4))
 def test_any_json_value_is_understood_or_refused_with_its_place(value: object):

@@ -1,0 +1,212 @@
+"""Who may begin what: limits on active inspections, open uploads and promised bytes, of one owner and of all.
+
+A limit is asked for and used up in one transaction, and such transactions follow one another, in one process
+or in many. What a request needs before it has a row of its own it holds as a reservation, which ends with the
+request, or by its time when the process was killed.
+"""
+
+from __future__ import annotations
+
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import ColumnElement, delete, func, or_, select
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from core.errors import BladeAtlasError, DiskFull
+from store.db import Database
+from store.models import ACTIVE_INSPECTION, Inspection, Reservation, Upload
+from store.settings import DeploymentSettings
+
+INSPECTION, UPLOAD = "inspection", "upload"
+"""Kinds of reservation: a place among the active inspections; a form that comes in, with its bytes."""
+_LOCK = 0x41444D49
+_PLACE_S = 900.0
+_FORM_S = 180.0
+"""A form's reservation is renewed more often than this while its client is heard of."""
+
+
+class LimitReached(BladeAtlasError):
+    """As much is under way as the service takes, in all or of one owner."""
+
+    code = "limit_reached"
+    retryable = True
+
+
+@dataclass(frozen=True)
+class Admission:
+    """The limits of a deployment over one database."""
+
+    db: Database
+    settings: DeploymentSettings
+
+    def look(self, owner: str) -> None:
+        """`LimitReached` when no inspection could begin now. Promises nothing: saves work that would be refused."""
+        with self.db.read() as session:
+            self._require_inspection(session, owner, self.db.now(session))
+
+    @contextmanager
+    def place(self, owner: str) -> Iterator[Place]:
+        """A place among the active inspections, given back unless it is used; `LimitReached` when there is none."""
+        with self.db.write() as session:
+            self._require_inspection(session, owner, self._begin(session))
+            held = self._reserve(session, owner, INSPECTION, 0, _PLACE_S)
+        try:
+            yield Place(self, owner, held)
+        finally:
+            self._end(held)
+
+    def admit_upload(self, session: Session, owner: str, size: int) -> None:
+        """Let an upload of `size` bytes begin in this transaction.
+
+        Raises:
+            LimitReached: too many uploads are open.
+            DiskFull: with what was promised before, the bytes would eat into the reserve.
+        """
+        now = self._begin(session)
+        self._require_upload(session, owner, now)
+        self.require_bytes(session, size, now)
+
+    def promise_form(self, owner: str, size: int) -> FormPromise:
+        """Promise a form of `size` bytes that is about to come in; it counts as an open upload until its end.
+
+        Raises:
+            LimitReached, DiskFull: as `admit_upload`.
+        """
+        with self.db.write() as session:
+            self.admit_upload(session, owner, size)
+            held = self._reserve(session, owner, UPLOAD, size, _FORM_S)
+        return FormPromise(self, owner, held)
+
+    def require_bytes(self, session: Session, size: int, now: datetime) -> None:
+        """`DiskFull` when `size` more bytes, and all that is promised and not yet written, would reach the reserve."""
+        rest = session.scalar(select(func.sum(Upload.length - Upload.offset)).where(*_open_uploads(now)))
+        forms = session.scalar(select(func.sum(Reservation.bytes)).where(*_reserved(UPLOAD, now)))
+        promised = int(rest or 0) + int(forms or 0)
+        free = shutil.disk_usage(self.settings.folder("")).free
+        if free - promised - size < self.settings.reserve_bytes:
+            message = (
+                "the disk has no room for this beside its reserve (reserve_bytes) and what other uploads will need"
+            )
+            raise DiskFull(message, where="disk")
+
+    def _begin(self, session: Session) -> datetime:
+        """One such transaction after the other; returns the time."""
+        self.db.lock(session, _LOCK)
+        return self.db.now(session)
+
+    def _require_inspection(self, session: Session, owner: str, now: datetime) -> None:
+        active = _count(session, owner, Inspection.owner, Inspection.state.in_(ACTIVE_INSPECTION))
+        coming = _count(session, owner, Reservation.owner, *_reserved(INSPECTION, now))
+        limits = (self.settings.max_active, self.settings.max_active_per_owner)
+        _require("max_active", "too_many_active", "inspections are queued or running", limits, active, coming)
+
+    def _require_upload(self, session: Session, owner: str, now: datetime) -> None:
+        uploads = _count(session, owner, Upload.owner, *_open_uploads(now))
+        forms = _count(session, owner, Reservation.owner, *_reserved(UPLOAD, now))
+        limits = (self.settings.max_open_uploads, self.settings.max_open_uploads_per_owner)
+        _require("max_open_uploads", "too_many_uploads", "uploads are open", limits, uploads, forms)
+
+    def _reserve(self, session: Session, owner: str, kind: str, size: int, seconds: float) -> str:
+        held = uuid.uuid4().hex
+        expires_at = self.db.now(session) + timedelta(seconds=seconds)
+        session.add(Reservation(id=held, owner=owner, kind=kind, bytes=size, expires_at=expires_at))
+        return held
+
+    def _end(self, held: str) -> None:
+        """Give a reservation back; where the database is away, its time ends it."""
+        with suppress(SQLAlchemyError), self.db.write() as session:
+            session.execute(delete(Reservation).where(Reservation.id == held))
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place among the active inspections that is held."""
+
+    admission: Admission
+    owner: str
+    held: str
+
+    def use(self, session: Session) -> None:
+        """Give it up for the inspection that becomes active in this transaction.
+
+        Raises:
+            LimitReached: its time had ended, and no other is left.
+        """
+        now = self.admission._begin(session)
+        kept = session.get(Reservation, self.held)
+        if kept is None or kept.expires_at <= now:
+            self.admission._require_inspection(session, self.owner, now)
+        if kept is not None:
+            session.delete(kept)
+            session.flush()
+
+
+@dataclass(frozen=True)
+class FormPromise:
+    """The promised bytes of a form that comes in."""
+
+    admission: Admission
+    owner: str
+    held: str
+
+    def keep(self, left: int) -> None:
+        """So many bytes are still to come; the promise lives on.
+
+        Raises:
+            DiskFull: it is more than was promised (a form need not say its length), and there is no room.
+        """
+        with self.admission.db.write() as session:
+            now = self.admission._begin(session)
+            kept = session.get(Reservation, self.held)
+            before = kept.bytes if kept is not None and kept.expires_at > now else 0
+            if left > before:
+                self.admission.require_bytes(session, left - before, now)
+            renewed = Reservation(id=self.held, owner=self.owner, kind=UPLOAD, bytes=left)
+            renewed.expires_at = now + timedelta(seconds=_FORM_S)
+            session.merge(renewed)
+
+    def end(self) -> None:
+        """All bytes are written, or none will come."""
+        self.admission._end(self.held)
+
+
+def _open_uploads(now: datetime) -> tuple[ColumnElement[bool], ...]:
+    """Uploads that are not whole; an empty one is whole at once and counts as long as it is kept."""
+    unfinished = or_(Upload.offset < Upload.length, Upload.length == 0)
+    return (Upload.removed_at.is_(None), Upload.expires_at > now, unfinished)
+
+
+def _reserved(kind: str, now: datetime) -> tuple[ColumnElement[bool], ...]:
+    return (Reservation.kind == kind, Reservation.expires_at > now)
+
+
+def _count(
+    session: Session, owner: str, column: InstrumentedAttribute[Any], *where: ColumnElement[bool]
+) -> tuple[int, int]:
+    """Rows of all and of this owner."""
+    row = session.execute(select(func.count(), func.count().filter(column == owner)).where(*where)).one()
+    return int(row[0]), int(row[1])
+
+
+def _require(
+    setting: str, code: str, what: str, limits: tuple[int, int], rows: tuple[int, int], reserved: tuple[int, int]
+) -> None:
+    """`LimitReached` unless one more fits, in all and of this owner; names the limit."""
+    for limit, used, name, whose in zip(
+        limits,
+        (rows[0] + reserved[0], rows[1] + reserved[1]),
+        (setting, f"{setting}_per_owner"),
+        ("", " of yours"),
+        strict=True,
+    ):
+        if used >= limit:
+            suffix = "_of_owner" if whose else ""
+            message = f"{used} {what}{whose} already, and {name} is {limit}; try again later"
+            raise LimitReached(message, code=code + suffix, where=name)

@@ -27,7 +27,7 @@ _COMMIT_EVERY_BYTES = 64 << 20
 _COMMIT_EVERY_S = 2.0
 """A killed server loses at most so much of what a client sent."""
 _SILENCE_S = 60.0
-"""A client that sends nothing for so long has gone without a word; its upload is free for the next request."""
+"""Seconds without a byte after which a client is taken as gone, so that its upload is free for the next request."""
 _DISK_THREADS = 8
 """Threads that wait for disks: a few, so that many uploads leave threads to those who only ask."""
 

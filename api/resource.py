@@ -58,7 +58,7 @@ class Published:
 
 @dataclass
 class Resources:
-    """Builds resources; remembers what is dear to read and does not change."""
+    """Builds the resources of inspections and caches what takes long to read and does not change."""
 
     services: Services
     _timings: Timings = field(default_factory=dict)

@@ -33,12 +33,12 @@ class Services:
 
     @property
     def inspections(self) -> Inspections:
-        """Inspections as a whole."""
+        """The repository of inspections."""
         return Inspections(self.db, self.graph)
 
     @property
     def plan(self) -> Plan:
-        """Cancellation."""
+        """The plan of tasks, through which inspections are cancelled."""
         return Plan(self.db, self.graph, self.settings.lease_s, self.settings.max_attempts)
 
     @property

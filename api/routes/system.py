@@ -100,11 +100,11 @@ class ServiceCollector(Collector):
         self._services = services
 
     def describe(self) -> Iterator[Metric]:
-        """Nothing: registering must not ask the database."""
+        """Give no metric, because registering the collector must not ask the database."""
         return iter(())
 
     def collect(self) -> Iterator[Metric]:
-        """One look."""
+        """Read the counts and times of all queues from the database and give them as metrics."""
         counts = count_all(self._services.db)
         inspections = GaugeMetricFamily("bladeatlas_inspections", "inspections by state", labels=["state"])
         for state, number in counts.inspections.items():

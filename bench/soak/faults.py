@@ -115,6 +115,6 @@ class Duplicates(threading.Thread):
                     continue
 
     def stop(self) -> None:
-        """No more."""
+        """Stop sending messages and wait until the thread has ended."""
         self._stopped.set()
         self.join()

@@ -30,10 +30,10 @@ SHARE_DROP = 0.1
 """A warm case that registers a share of its frames lower by more than this is mapped again from scratch."""
 
 FOCAL_JUMP = 0.03
-"""So is one whose focal length moved by a larger share than this,"""
+"""A warm case whose focal length moved by a larger share than this is mapped again from scratch."""
 
 ERROR_RISE = 1.5
-"""or whose median reprojection error grew by more than this factor."""
+"""A warm case whose median reprojection error grew by more than this factor is mapped again from scratch."""
 
 
 @dataclass(frozen=True)

@@ -30,12 +30,13 @@ F64 = NDArray[np.float64]
 OVERLAP = 12
 """Frames beside a piece that are mapped with it: those that the model has are shared."""
 MIN_SHARED = 6
+"""Fewer shared images do not fix a similarity that can be checked on images left out."""
 MAX_TURN_DEG = 2.0
-"""On the images left out: median angle between the two models' cameras,"""
+"""Largest median angle between the cameras of the two models on the images left out of the alignment, in degrees."""
 MAX_SHIFT = 0.05
-"""median distance of their centres over the extent of the shared ones,"""
+"""Largest median distance of their centres, as a share of the extent of the shared centres."""
 MAX_SCALE = 0.05
-"""and difference of the scales that the two halves give."""
+"""Largest difference of the scales that two halves of the shared images give, as a share."""
 
 Outcome = Literal["joined", "no_model", "no_shared_images", "disagree", "vetoed", "not_better"]
 
@@ -77,7 +78,7 @@ class Poses:
     """(n, 3)"""
 
     def rows(self, which: slice) -> Poses:
-        """Some of them."""
+        """The poses of a slice of the rows."""
         return Poses(self.rotations[which], self.centers[which])
 
 

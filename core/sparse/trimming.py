@@ -35,14 +35,15 @@ MIN_PER_IMAGE = 40
 """An image with fewer tracks in the better part keeps its best ones beyond it."""
 
 TERMS = (1, 2)
-"""Radial terms of the lens, stage by stage."""
+"""Numbers of radial terms that the lens has in the first and in the second stage of trimming."""
 MAX_ROUNDS = 12
-"""Of one stage."""
+"""Largest number of rounds of one stage."""
 ADMITTED = 2.5
-"""Times the typical error of the better part, up to which a track is admitted at last;"""
+"""A track is admitted at the end when its error is at most this many times the typical one of the better part."""
 ADMITTED_PER_IMAGE = 400
-"""the best so many of an image, if it has as many. More take longer and move nothing."""
+"""Largest number of tracks that are admitted for an image, best first. More take longer and move nothing."""
 ADMITTED_ROUNDS = 3
+"""Number of rounds of adjustment with the admitted tracks."""
 SETTLED = 0.001
 """Rounds end when the focal length changed by less than this share."""
 POINT_LOSS_PX = 1.0

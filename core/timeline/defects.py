@@ -27,9 +27,9 @@ F64 = NDArray[np.float64]
 MIN_EXISTENCE = 0.5
 """A place whose detections are more likely inventions than not makes no record."""
 SMALLEST_SHARE = 0.05
-"""Quantile of the boxes' sizes that stands for the smallest;"""
+"""The quantile of the boxes' sizes that stands for the smallest size at which the detector finds something."""
 SMALLEST_SLACK = 0.9
-"""what is expected to show at this share of it may well be detected."""
+"""A frame counts as one that could show a defect when it would show it at this share of the smallest size or larger."""
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ def _recall(defects: Sequence[Defect]) -> float:
 
 
 def _judged(one: Observation, defect: Defect, doubts: int) -> Observation:
-    """With its confidence, now that its peers are known."""
+    """The observation with its confidence, which depends on the other observations of the same defect."""
     if one.parts is None:
         return one
     place = np.array((one.row.x, one.row.y, one.row.z))

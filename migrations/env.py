@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from alembic import context
-from sqlalchemy import URL, Connection, make_url, text
+from sqlalchemy import URL, Connection, event, make_url, text
 
 from store.db import make_engine
 from store.models import Base
@@ -32,8 +34,16 @@ def _migrate(connection: Connection) -> None:
         context.run_migrations()
 
 
+def _without_foreign_keys(connection: Any, _record: object) -> None:
+    """SQLite changes a table by making it anew, and dropping the old one would delete the rows that refer to it."""
+    connection.execute("PRAGMA foreign_keys=OFF").close()
+
+
 def _run() -> None:
     engine = make_engine(_url()).execution_options(bladeatlas_write=True)
+    if engine.dialect.name == "sqlite":
+        # When a connection is made, because inside a transaction the pragma does nothing.
+        event.listen(engine, "connect", _without_foreign_keys)
     try:
         with engine.connect() as connection:
             _migrate(connection)

@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint check test bench-speed bench-accuracy bench-scenes bench-service soak lock clean
+.PHONY: help setup demo lint docs check test bench-speed bench-accuracy bench-scenes bench-service soak lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -24,10 +24,13 @@ lint: setup
 	$(BIN)/lint-imports
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 
-check: lint ## lint, types, layers and unit tests (minutes)
+docs: setup ## build the documentation into out/site; a broken link or a page that is in no menu fails
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
 	$(BIN)/pytest -m "not sample and not deployment"
 
-test: lint ## everything, with whole deployments and the runs on the sample
+test: lint docs ## everything, with whole deployments and the runs on the sample
 	$(BIN)/pytest
 
 bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs

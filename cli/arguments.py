@@ -67,7 +67,7 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run = _add(commands, "run", "inspect: video and annotations in, result folder out", epilog=_EXIT_CODES)
-    run.add_argument("video", type=Path, metavar="VIDEO")
+    run.add_argument("video", type=Path, metavar="VIDEO", help="any file that FFmpeg decodes")
     run.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON; see docs/annotations.md")
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)

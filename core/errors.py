@@ -1,7 +1,8 @@
 """The one tree of expected errors.
 
-Every class carries a stable `code`; the worker decides from the class what is retried, the API maps
-codes to HTTP, the command line maps them to exit codes. Nothing here knows about either.
+Every class carries a stable `code`; the worker decides from `retryable` and the code what is retried, the API maps
+codes to HTTP, the command line maps classes to exit codes. Nothing here knows about any of them. Layers above `core`
+add errors of their own as subclasses, beside the code that raises them.
 """
 
 from __future__ import annotations
@@ -52,7 +53,11 @@ class StageFailed(BladeAtlasError):
 
 
 class ResourceError(BladeAtlasError):
-    """Disk, memory or another resource ran out. Retried by the runner within its limits."""
+    """Memory, time or another resource of the machine ran out.
+
+    Retried by the runner within its limits, unless the same would happen again: a task that exceeded its memory
+    (`oom`) or its time (`timeout`) fails at once, and a full disk (`DiskFull`) stops the run.
+    """
 
     code = "resource"
     retryable = True

@@ -18,21 +18,29 @@ class DeploymentSettings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix="BLADEATLAS_", frozen=True, extra="ignore")
 
-    data_dir: Path = Field(Path("bladeatlas-data"), description="folder of the embedded store")
-    database_url: str = Field("", description="SQLAlchemy URL; empty = SQLite in the data folder")
+    data_dir: Path = Field(
+        Path("bladeatlas-data"), description="local folder: uploads, and all else unless configured otherwise"
+    )
+    database_url: str = Field("", description="postgresql://user:password@host/name; empty = SQLite in the data folder")
     workers: int = Field(0, ge=0, description="tasks side by side; 0 = number of cores")
     lease_s: float = Field(30.0, gt=0, description="a lease without a heartbeat ends after this, in seconds")
     heartbeat_s: float = Field(10.0, gt=0, description="leases are renewed this often, in seconds")
     max_attempts: int = Field(3, ge=1, description="attempts of a task that loses its process or a resource")
-    task_memory_bytes: int = Field(0, ge=0, description="a task above this resident size is ended (oom); 0 = no limit")
-    task_seconds: float = Field(14_400.0, gt=0, description="a task that runs longer is ended (timeout), in seconds")
+    task_memory_bytes: int = Field(
+        0, ge=0, description="a task above this resident size is ended (oom) and not tried again; 0 = no limit"
+    )
+    task_seconds: float = Field(
+        14_400.0, gt=0, description="a task that runs longer is ended (timeout) and not tried again, in seconds"
+    )
     artifacts_url: str = Field(
-        "", description="where results are kept: fsspec URL, e.g. s3://bucket/prefix; empty = data folder"
+        "", description="where files are kept: s3://bucket/prefix or file:///shared (fsspec); empty = data folder"
     )
     artifacts_options: dict[str, Any] = Field({}, description="JSON for fsspec, e.g. endpoint_url and credentials")
-    broker_url: str = Field("", description="Celery broker, e.g. redis://host/0; empty = runners inside the server")
+    broker_url: str = Field("", description="redis://host/0 or amqp://host; empty = runners inside the server")
     visibility_timeout_s: float = Field(
-        21_600.0, gt=0, description="the broker hands an unacknowledged message out again after this"
+        21_600.0,
+        gt=0,
+        description="the broker hands an unacknowledged message out again after this, in seconds; early is harmless",
     )
     sweep_s: float = Field(10.0, gt=0, description="what was lost is looked for this often, in seconds")
     stale_s: float = Field(
@@ -40,24 +48,38 @@ class DeploymentSettings(BaseSettings):
     )
     retention_days: float = Field(30.0, ge=0, description="an inspection is removed so long after it ended; 0 = never")
     upload_hours: float = Field(72.0, gt=0, description="an upload that nobody used is removed after this")
-    reserve_bytes: int = Field(2 << 30, ge=0, description="free space below which new work is refused (507)")
+    reserve_bytes: int = Field(
+        2 << 30, ge=0, description="free space below which new work is refused (507); what runs goes on"
+    )
     max_upload_bytes: int = Field(64 << 30, ge=1, description="largest upload")
     max_annotations_bytes: int = Field(128 << 20, ge=1, description="largest annotation file")
     max_active: int = Field(100, ge=1, description="inspections queued or running, at most; more get 429")
-    max_active_per_owner: int = Field(50, ge=1, description="the same of one owner")
-    max_open_uploads: int = Field(1000, ge=1, description="unfinished uploads and forms, at most; more get 429")
+    max_active_per_owner: int = Field(
+        50, ge=1, description="the same of one owner, that is one key; without keys all callers are one"
+    )
+    max_open_uploads: int = Field(
+        1000, ge=1, description="unfinished uploads, and forms while they come in, at most; more get 429"
+    )
     max_open_uploads_per_owner: int = Field(100, ge=1, description="the same of one owner")
-    max_frame_pixels: int = Field(MAX_FRAME_PIXELS, ge=1, description="largest picture of a video, in pixels")
+    max_frame_pixels: int = Field(
+        MAX_FRAME_PIXELS,
+        ge=1,
+        description="largest picture of a video, in pixels; stages hold to it: set it for workers too",
+    )
     max_video_frames: int = Field(500_000, ge=1, description="frames that a video's header may state")
     max_video_seconds: float = Field(21_600.0, gt=0, description="length that a video's header may state, in seconds")
-    probe_seconds: float = Field(8.0, gt=0, description="processor time to look into an uploaded video")
+    probe_seconds: float = Field(8.0, gt=0, description="processor time to look into an uploaded video, in seconds")
     probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
-    probe_wait_seconds: float = Field(60.0, gt=0, description="who waits longer for such a look gets 503")
-    max_probes_waiting: int = Field(200, ge=0, description="requests that wait for such a look, at most; more get 503")
+    probe_wait_seconds: float = Field(
+        60.0, gt=0, description="two videos are looked into at a time, in turn by owner; who waits longer gets 503"
+    )
+    max_probes_waiting: int = Field(
+        200, ge=0, description="requests of one server that wait for such a look, at most; more get 503"
+    )
     max_probes_waiting_per_owner: int = Field(50, ge=0, description="the same of one owner; more get 429")
 
     trusted_hosts: str = Field(
-        "", description="names that the server goes by, separated by commas; empty = any. Only with API keys"
+        "", description="with API keys: names that the server goes by, separated by commas; others get 421; empty = any"
     )
     graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
 

@@ -12,8 +12,10 @@ from typing import Any
 
 import pytest
 import yaml
+from markdown.extensions.toc import slugify
 
 from core.settings import PRESET_NAMES
+from scripts import reference_pages
 from store.settings import DeploymentSettings
 from tests import conftest
 
@@ -110,14 +112,43 @@ def test_the_patterns_find_what_they_are_for() -> None:
 
 
 def test_links_of_documents_resolve() -> None:
+    """Pages that are made when the site is built count as there; the headings within docs/ are checked by mkdocs."""
+    made = {ROOT / "docs" / name for name in reference_pages.PAGES}
     broken = []
     for path, text in texts():
         if path.suffix != ".md":
             continue
-        for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
-            if "://" not in target and not (path.parent / target).exists():
-                broken.append(f"{path.relative_to(ROOT)} -> {target}")
+        for target, heading in re.findall(r"\]\(([^)#\s]*)(?:#([^)]*))?\)", text):
+            found = (path.parent / target).resolve() if target else path
+            if "://" in target or (found in made and (ROOT / "docs") in path.parents):
+                continue
+            if not found.exists() or (heading and heading not in headings(found)):
+                broken.append(f"{path.relative_to(ROOT)} -> {target}#{heading}")
     assert not broken
+
+
+def headings(path: Path) -> set[str]:
+    """Names by which links reach the headings of a document."""
+    return {slugify(line.lstrip("# "), "-") for line in path.read_text("utf-8").splitlines() if line.startswith("#")}
+
+
+def test_the_site_loads_nothing_from_elsewhere_and_fails_on_a_broken_link() -> None:
+    text = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    assert not re.search(r"https?://", text)
+    site = yaml.safe_load(text)
+    assert site["theme"]["font"] is False
+    assert "analytics" not in site["extra"]
+    assert site["hooks"] == ["scripts/reference_pages.py"]
+    assert set(site["validation"].values()) == {"warn"}
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert "mkdocs build --strict" in makefile
+    assert re.findall(r"^(?:check|test): lint (docs) ##", makefile, re.MULTILINE) == ["docs", "docs"]
+
+
+def test_readme_is_short_and_its_limits_begin_with_the_missing_video() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert readme.count("\n") <= 120
+    assert "## Limits\n- **No real video of turbine blades has been available.**" in readme
 
 
 def test_lock_is_complete_and_plain() -> None:

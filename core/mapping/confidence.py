@@ -2,8 +2,8 @@
 
 A logistic model over a few parts that every placement has. The weights were fitted on rendered scenes of
 the calibration family (`bladeatlas-bench scenes --family calibration`), none of which is in the suite that
-results are reported on; docs/accuracy.md has the reliability diagram. It is multiplied by how likely the model
-itself is right, which a handful of scenes does not fit: `MODEL_RIGHT` is set by hand.
+results are reported on; docs/experiments/confidence.md has the reliability diagram. It is multiplied by how likely
+the model itself is right, which a handful of scenes does not fit: `MODEL_RIGHT` is set by hand.
 """
 
 from __future__ import annotations

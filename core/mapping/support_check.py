@@ -1,4 +1,4 @@
-"""The thesis's sparse support and the depth map as witnesses for a place found by casting."""
+"""How well the sparse points in a detection's box agree in depth with the surface patch found by casting."""
 
 from __future__ import annotations
 
@@ -14,24 +14,26 @@ AGREE_SPACINGS = 6.0
 AGREE_SHARE = 0.02
 """or within this share of the distance."""
 MIN_POINTS = 3
+"""With fewer points nothing is said about agreement."""
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """Share of independent depths near a place that agree with it; None when there are too few."""
+    """How many depths were compared with a place, and which share of them agrees with it."""
 
     share: float | None
+    """None with fewer than `MIN_POINTS` depths."""
     count: int
 
 
 def depth_agreement(distances: F64, expected: float, spacing: float) -> Agreement:
-    """Compare depths measured under a detection with that of its patch.
+    """Compare the depths of sparse points in a detection's box with that of its patch.
 
     Points behind the patch are no contradiction where the detection shows two surfaces: only what lies
     before it, or on it, is counted against or for it.
 
     Args:
-        distances: (n,) from the camera, scene units, of sparse points or depth pixels in the box.
+        distances: (n,) from the camera, scene units, of the sparse points in the box.
         expected: of the patch.
         spacing: of the fused cloud.
     """

@@ -316,7 +316,8 @@ class MappingSettings(Group):
     )
     time_tolerance_s: float = option(
         0.4,
-        "nearest registered image in time, nearer than; between two such, a pose is interpolated",
+        "a registered image that gives a detection its place is nearer in time than this: the nearest one (thesis), or "
+        "both neighbours of an interpolated pose (surface)",
         unit="s",
         source="thesis",
         gt=0,

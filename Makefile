@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint docs check test bench-speed bench-accuracy bench-scenes bench-service soak lock clean
+.PHONY: help setup demo lint docs check test bench-speed bench-accuracy bench-scenes bench-service soak mutate lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -47,6 +47,9 @@ bench-service: setup ## time uploads, downloads, many clients and the queue
 
 soak: setup ## jobs through a whole deployment while its processes are killed (hours; SOAK="--toy": a minute)
 	$(BIN)/bladeatlas-bench soak out/soak $(SOAK)
+
+mutate: setup ## change the code of AREA (placement, defects, annotations, points, plan) in 60 places, list what its tests miss
+	$(BIN)/bladeatlas-bench mutate $(AREA)
 
 lock: setup ## write requirements.lock from .venv
 	scripts/lock.sh

@@ -1,4 +1,4 @@
-"""`bladeatlas-bench`: how right and how fast a result is, and what the service survives."""
+"""`bladeatlas-bench`: how right and how fast a result is, what the service survives, what the tests notice."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.mutate import command as mutate
 from bench.scenes import command as scenes
 from bench.service import command as service
 from bench.soak import command as soak
@@ -46,6 +47,9 @@ def make_parser() -> argparse.ArgumentParser:
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)
+    mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
+    mutate.add_arguments(mutate_parser)
+    mutate_parser.set_defaults(run=mutate.command)
     return parser
 
 

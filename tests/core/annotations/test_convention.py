@@ -134,6 +134,30 @@ def test_keys_of_something_else_are_refused_with_a_diagnosis() -> None:
     assert fit(keys, table_of(EVEN), "displayed").forced
 
 
+def test_a_tenth_of_the_keys_may_share_frames_and_no_more() -> None:
+    """Moments between frames, in seconds: of 40 keys 4 fall on the frame of another one, then 5 of 41."""
+    keys = [f"{i / 25 + 0.0317:.4f}" for i in range(36)]
+    shared = [f"{i / 25 + 0.0251:.4f}" for i in range(5)]
+    assert fit([*keys, *shared[:4]], table_of(EVEN)).reading.clock == "displayed"
+    with pytest.raises(BadInput) as caught:
+        fit([*keys, *shared], table_of(EVEN))
+    assert caught.value.code == "annotation_times_unclear"
+
+
+def test_the_refusal_names_the_first_key_that_misses() -> None:
+    keys = ["0.0000", *(f"{0.04 * (i // 2) + 0.013 + 0.011 * (i % 2):.4f}" for i in range(20))]
+    with pytest.raises(BadInput) as caught:
+        fit(keys, table_of(EVEN))
+    assert caught.value.where == '"0.0130"'
+
+
+def test_the_largest_miss_is_told_without_the_strays() -> None:
+    fitted = fit([f"{i / 25 + (0.001 if i == 3 else 0):.4f}" for i in range(49)] + ["1.9750"], table_of(EVEN))
+    assert fitted.reading.strays == ("1.9750",)
+    assert fitted.reading.max_miss == Fraction(1, 1000)
+    assert fitted.to_dict()["max_miss_s"] == 0.001
+
+
 def test_a_convention_can_be_told() -> None:
     keys = [f"{i / 25:.4f}" for i in range(1, 20)]
     assert frames_of(fit(keys, table_of(EVEN), "average_rate+1")) == list(range(19))

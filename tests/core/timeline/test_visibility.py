@@ -10,7 +10,7 @@ import numpy as np
 import pycolmap
 import pytest
 
-from core.timeline.visibility import Occlusion, View, sightings, views_of_model
+from core.timeline.visibility import Occlusion, Sighting, View, sightings, views_of_model
 
 
 def wall(z: float, half: float) -> tuple[np.ndarray, np.ndarray]:
@@ -65,3 +65,29 @@ def test_views_outlive_their_model() -> None:
     assert [v.frame_index for v in views] == sorted(expected)
     for v in views:
         assert v.center == pytest.approx(expected[v.frame_index])
+
+
+def test_quality_is_the_cosine_of_incidence_over_the_squared_distance() -> None:
+    place, nothing = np.array([[0.0, 0, 10]]), Occlusion(np.zeros((0, 3)), np.zeros((0, 3), np.int32))
+    best, oblique = sightings(place, NORMAL, [view(0, 3.0, 6.0), view(1, 0.0, 8.0)], nothing, 0.0)
+    assert (best.frame_index, best.quality) == (1, 1.0)
+    assert oblique.quality == pytest.approx((4 / 5 / 25) / (1 / 4))
+    unknown = sightings(place, np.zeros(3), [view(0, 3.0, 6.0), view(1, 0.0, 8.0)], nothing, 0.0)
+    assert unknown[1].quality == pytest.approx((1 / 25) / (1 / 4))
+
+
+def test_a_view_counts_from_half_of_the_sample_points() -> None:
+    """The image is 200 pixels wide at a focal length of 100: at depth 10 it ends 10 from the axis."""
+    nothing = Occlusion(np.zeros((0, 3)), np.zeros((0, 3), np.int32))
+    inside, outside = [0.0, 0, 10], [10.1, 0, 10]
+    assert sightings(np.array([inside, outside]), NORMAL, [view(0, 0.0, 0.0)], nothing, 0.0)
+    assert not sightings(np.array([inside, outside, outside]), NORMAL, [view(0, 0.0, 0.0)], nothing, 0.0)
+    behind = np.array([[0.0, 0, -10]])
+    assert not sightings(behind, NORMAL, [view(0, 0.0, 0.0)], nothing, 0.0)
+
+
+def test_a_sighting_is_written_with_four_digits_and_its_place_with_five() -> None:
+    bare = Sighting(3, 0.123456).to_dict(True)
+    assert bare == {"frame_index": 3, "quality": 0.1235, "detected": True}
+    placed = Sighting(3, 0.123456, (0.1234567, 0.7654321)).to_dict(False)
+    assert placed == {"frame_index": 3, "quality": 0.1235, "detected": False, "x": 0.12346, "y": 0.76543}

@@ -1,0 +1,1 @@
+"""`bladeatlas-bench mutate`: whether the tests of an area fail when its code is changed."""

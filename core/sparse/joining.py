@@ -16,10 +16,11 @@ import pycolmap
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from core.checks.stats import model_stats
 from core.settings.groups import MapperSettings
 from core.sparse.cases import MIN_MATCHES, Case, run_case
 from core.sparse.densify import densify, transfer_poses
-from core.sparse.mapper import mapper_options, model_stats, open_cache
+from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.pieces import groups_of
 from core.sparse.tracks import build_tracks
 from core.sparse.view_graph import read_frames

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bench.accuracy.align import Sim3
 from bench.accuracy.truth import TrueBox, Truth
+from core.geometry.boxes import box_iou
 
 F64 = NDArray[np.float64]
 
@@ -43,15 +44,6 @@ class Placement:
     def right(self) -> bool:
         """Placed, on a true defect, and not wrong. A false box has no right place."""
         return self.true_defect is not None and self.error_mm is not None and not self.wrong
-
-
-def box_iou(a: F64, b: F64) -> float:
-    """Intersection over union of two boxes (x1, y1, x2, y2); 0 when they only touch."""
-    width, height = np.minimum(a[2:], b[2:]) - np.maximum(a[:2], b[:2])
-    if width <= 0 or height <= 0:
-        return 0.0
-    area_a, area_b = (a[2] - a[0]) * (a[3] - a[1]), (b[2] - b[0]) * (b[3] - b[1])
-    return float(width * height / (area_a + area_b - width * height))
 
 
 def true_defect(box_px: F64, visible: list[TrueBox]) -> int | None:

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from core.dense.cameras import Pinhole, Pose
 from core.dense.maps import map_paths, open_scene, read_map
+from core.geometry.boxes import Box
 from core.mapping.consensus import looked_at
 from core.mapping.depth_witness import DepthMaps
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal, oriented
-from core.mapping.support import Box, open_model, read_sparse_model
+from core.mapping.support import open_model, read_sparse_model
 from core.mapping.surface import Surface
 from core.mapping.surface_rules import Matches
 from core.mapping.views import Views, views_of

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import Box
 from core.mapping.rows import Detection, DetectionRow, mapped_row, unplaced_row
-from core.mapping.support import Box, SparseModel, box_in_crop_px, overlaps_crop
+from core.mapping.support import SparseModel, box_in_crop_px, overlaps_crop
 from core.roi import Crop
 from core.settings.groups import MappingSettings
 

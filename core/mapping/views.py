@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
+
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
@@ -56,8 +58,7 @@ class Views:
         xy = np.full((len(flat), 2), np.nan)
         if before.any():
             xy[before] = np.asarray(self.camera.img_from_cam(np.ascontiguousarray(flat[before])))
-        with np.errstate(invalid="ignore"):
-            inside = (xy >= 0).all(axis=1) & (xy[:, 0] <= self.camera.width) & (xy[:, 1] <= self.camera.height)
+        inside = in_box(xy, (0, 0, self.camera.width, self.camera.height))
         shape = in_cam.shape[:2]
         return xy.reshape(*shape, 2), (inside & before).reshape(shape)
 

@@ -11,6 +11,8 @@ import numpy as np
 import open3d as o3d
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
+
 F64 = NDArray[np.float64]
 
 MIN_VISIBLE_SHARE = 0.5
@@ -116,9 +118,7 @@ def _visible_share(points: F64, view: View, occlusion: Occlusion, tolerance: flo
     R, t = view.cam_from_world[:, :3], view.cam_from_world[:, 3]
     in_camera = points @ R.T + t
     xy = np.asarray(view.camera.img_from_cam(in_camera), dtype=np.float64)
-    with np.errstate(invalid="ignore"):
-        inside = (xy >= 0).all(axis=1) & (xy[:, 0] <= view.camera.width) & (xy[:, 1] <= view.camera.height)
-    inside &= in_camera[:, 2] > 0
+    inside = in_box(xy, (0, 0, view.camera.width, view.camera.height)) & (in_camera[:, 2] > 0)
     if inside.mean() < MIN_VISIBLE_SHARE:
         return 0.0
     clear = occlusion.clear(view.center, points[inside], tolerance)

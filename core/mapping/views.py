@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.boxes import in_box
+from core.geometry.pose import camera_centers
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -31,8 +32,7 @@ class Views:
     @property
     def centers(self) -> F64:
         """(f, 3) projection centres."""
-        centers: F64 = -np.einsum("fji,fj->fi", self.R, self.t)
-        return centers
+        return camera_centers(self.R, self.t)
 
     def row(self, frame_index: int) -> int | None:
         """Row of a frame; None when it is not registered."""

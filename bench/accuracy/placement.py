@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.accuracy.align import Sim3
 from bench.accuracy.truth import TrueBox, Truth
 from core.geometry.boxes import box_iou
+from core.geometry.similarity import Similarity
 
 F64 = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def true_defect(box_px: F64, visible: list[TrueBox]) -> int | None:
 
 
 def place_detections(
-    rows: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Sim3 | None]
+    rows: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Similarity | None]
 ) -> list[Placement]:
     """Compare every row of `detections.json` with the truth; `alignments` by model number."""
     scale = np.array([truth.lens.width, truth.lens.height] * 2, np.float64)
@@ -83,7 +83,7 @@ def place_detections(
     return placements
 
 
-def aligned_point(xyz: list[Any], model: Any, alignments: Mapping[int, Sim3 | None]) -> F64 | None:
+def aligned_point(xyz: list[Any], model: Any, alignments: Mapping[int, Similarity | None]) -> F64 | None:
     """(3,) place in the true frame; None without coordinates or without an alignment of its model."""
     sim3 = alignments.get(0 if model in (None, "") else int(model))
     if sim3 is None or any(value is None for value in xyz):

@@ -1,4 +1,4 @@
-"""Axis-aligned boxes in an image: their overlap, and the points that lie in them."""
+"""Axis-aligned boxes: their overlap in an image, and the points that lie in them."""
 
 from __future__ import annotations
 
@@ -21,19 +21,21 @@ def box_iou(a: Sequence[float] | NDArray[np.float64], b: Sequence[float] | NDArr
     return float(common / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - common))
 
 
-def in_box(xy: NDArray[np.float64], box: ArrayLike, *, border: bool = True) -> NDArray[np.bool_]:
+def in_box(points: NDArray[np.float64], box: ArrayLike, *, border: bool = True) -> NDArray[np.bool_]:
     """Which points lie in a box; a point that is not a number lies in none.
 
     Args:
-        xy: (..., 2) points.
-        box: (..., 4) left, upper, right, lower; its leading axes are broadcast against those of the points.
+        points: (..., d), d = 2 in an image.
+        box: (..., 2 d) lower bounds, then upper ones: left, upper, right, lower. Its leading axes are broadcast
+            against those of the points.
         border: whether the box's border belongs to it.
 
     Returns:
         (...) flags.
     """
     corners = np.asarray(box, np.float64)
-    low, high = corners[..., :2], corners[..., 2:]
+    low, high = np.split(corners, 2, axis=-1)
     with np.errstate(invalid="ignore"):
-        inside = (xy >= low) & (xy <= high) if border else (xy > low) & (xy < high)
-    return np.asarray(inside.all(axis=-1))
+        if border:
+            return np.asarray(((points >= low) & (points <= high)).all(axis=-1))
+        return np.asarray(((points > low) & (points < high)).all(axis=-1))

@@ -46,3 +46,9 @@ def test_many_points_are_held_against_many_boxes() -> None:
     each = np.array([[in_box(point[0], box) for box in boxes] for point in xy])
     assert np.array_equal(in_box(xy, boxes), each)
     assert 0 < each.sum() < each.size
+
+
+def test_boxes_have_any_number_of_dimensions() -> None:
+    points = np.random.default_rng(4).uniform(0.0, 1.0, (50, 3))
+    low, high = np.array([0.1, 0.2, 0.3]), np.array([0.9, 0.8, 0.7])
+    assert np.array_equal(in_box(points, (*low, *high)), ((points >= low) & (points <= high)).all(axis=1))

@@ -10,6 +10,7 @@ import numpy as np
 import open3d as o3d
 from numpy.typing import NDArray
 
+from core.geometry.pose import camera_center
 from core.surface.glb import vertex_normals
 from core.surface.ply import Mesh
 from core.viewpoint import Viewpoint
@@ -79,7 +80,7 @@ class Renderer:
         Args:
             cam_from_world: (n, 3, 4) poses.
         """
-        rays = [np.concatenate([-pose[:, :3].T @ pose[:, 3], pose[2, :3]]) for pose in cam_from_world]
+        rays = [np.concatenate([camera_center(pose[:, :3], pose[:, 3]), pose[2, :3]]) for pose in cam_from_world]
         hits = self._cast(np.array(rays, np.float32).reshape(-1, 1, 6))
         return float(hits.front[hits.hit].mean()) if hits.hit.any() else 1.0
 

@@ -15,7 +15,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from core.errors import StageFailed
-from core.matching.outcome import MatchedPair
+from core.matched_pair import MatchedPair
 
 
 @dataclass(frozen=True)

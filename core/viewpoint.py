@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
+
 F64 = NDArray[np.float64]
 
 FOV_DEG = 30.0
@@ -88,7 +90,7 @@ def framed(points: F64, forward: F64, down: F64, aspect: float, fov_deg: float =
     local = points @ axes.T
     low, high = np.percentile(local, [0.5, 99.5], axis=0)
     size = max(float(np.linalg.norm(high - low)), 1e-9)
-    local = local[((local >= low) & (local <= high)).all(axis=1)]
+    local = local[in_box(local, (*low, *high))]
     if not len(local):
         local = (low + high)[None] / 2
     half = np.array([tan(radians(fov_deg) / 2) * aspect, tan(radians(fov_deg) / 2)]) / MARGIN

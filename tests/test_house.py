@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import subprocess
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -191,3 +193,99 @@ def test_readme_names_every_preset_and_exit_code() -> None:
         assert f"`{preset}`" in readme or f"--preset {preset}" in readme
     for code in ("0 done", "1 internal error", "2 bad input", "3 no reconstruction", "4 partial", "130 interrupted"):
         assert code in readme
+
+
+GEOMETRY = {
+    "camera centre": "pose.py",
+    "transform of points": "pose.py",
+    "overlap of boxes": "boxes.py",
+    "points in a box": "boxes.py",
+    "nearest of sorted values": "nearest.py",
+    "fisheye polynomial": "fisheye.py",
+}
+"""What is written once, and the file of `core/geometry` that holds it."""
+
+
+def test_geometry_is_written_once() -> None:
+    found: dict[str, set[str]] = {}
+    for path in tracked():
+        name = path.relative_to(ROOT)
+        if path.suffix == ".py" and name.parts[0] in {"core", "bench"}:
+            for concept in geometry_in(path.read_text(encoding="utf-8")):
+                found.setdefault(concept, set()).add(str(name))
+    assert found == {concept: {f"core/geometry/{file}"} for concept, file in GEOMETRY.items()}
+
+
+@pytest.mark.parametrize(
+    ("concept", "code"),
+    [
+        ("camera centre", "c = -pose[:, :3].T @ pose[:, 3]"),
+        ("camera centre", "c = -np.einsum('fji,fj->fi', R, t)"),
+        ("transform of points", "x = points @ pose.R.T + pose.t"),
+        ("overlap of boxes", "iou = w * h / (sum(areas) - w * h)"),
+        ("overlap of boxes", "iou = common / (a + b - common)"),
+        ("points in a box", "i = (xy[:, 0] >= x1) & (xy[:, 0] <= x2) & (xy[:, 1] >= y1) & (xy[:, 1] <= y2)"),
+        ("points in a box", "i = (x >= x1) & (x <= x2) & (y >= y1) & (y <= y2)"),
+        ("points in a box", "i = (xy > 0).all(axis=1) & (xy[:, 0] < w) & (xy[:, 1] < h)"),
+        ("points in a box", "i = ((xy >= low) & (xy <= high)).all(axis=-1)"),
+        ("nearest of sorted values", "k = a if value - times[a] <= times[b] - value else b"),
+        ("nearest of sorted values", "k = np.abs(self.times_s - time_s).argmin()"),
+        ("fisheye polynomial", "r = theta * (1 + t * (k1 + t * (k2 + t * (k3 + t * k4))))"),
+        ("fisheye polynomial", "scale = scale + k * square**power"),
+    ],
+)
+def test_geometry_is_recognised_where_it_is_written_again(concept: str, code: str) -> None:
+    assert geometry_in(code) == {concept}
+
+
+def geometry_in(source: str) -> set[str]:
+    return {concept for node in ast.walk(ast.parse(source)) for concept in _concepts(node)}
+
+
+def _concepts(node: ast.AST) -> Iterator[str]:
+    match node:
+        case ast.BinOp(ast.UnaryOp(ast.USub(), ast.Attribute(attr="T")), ast.MatMult()):
+            yield "camera centre"
+        case ast.UnaryOp(ast.USub(), ast.Call(ast.Attribute(attr="einsum"), [ast.Constant("fji,fj->fi"), *_])):
+            yield "camera centre"
+        case ast.BinOp(ast.BinOp(_, ast.MatMult(), ast.Attribute(attr="T")), ast.Add()):
+            yield "transform of points"
+        case ast.BinOp(part, ast.Div(), ast.BinOp(_, ast.Sub(), again)) if ast.dump(part) == ast.dump(again):
+            yield "overlap of boxes"
+        case ast.BinOp(_, ast.BitAnd()) | ast.Call(ast.Attribute(ast.BinOp(), "all")) if _bounds_a_point(node):
+            yield "points in a box"
+        case ast.Compare(ast.BinOp(a, ast.Sub(), _), [ast.LtE()], [ast.BinOp(ast.Subscript(), ast.Sub(), b)]):
+            if ast.dump(a) == ast.dump(b):
+                yield "nearest of sorted values"
+        case ast.Call(ast.Attribute(ast.Call(ast.Attribute(attr="abs"), [ast.BinOp(a, ast.Sub())]), "argmin")):
+            if "time" in ast.unparse(a):
+                yield "nearest of sorted values"
+        case ast.BinOp(_, ast.Mult(), _) if _horner_depth(node) >= 3:
+            yield "fisheye polynomial"
+        case ast.BinOp(_, ast.Add(), ast.BinOp(_, ast.Mult(), ast.BinOp(_, ast.Pow(), ast.Name()))):
+            yield "fisheye polynomial"
+
+
+def _bounds_a_point(node: ast.AST) -> bool:
+    """Whether comparisons bound the same points from both sides alike: by columns, all at once, or as x and y.
+
+    A half-open range, as of array indices, is no box, and an interval of one number is none.
+    """
+    bounds: dict[str, set[str]] = {}
+    planar = ".all(" in ast.unparse(node)
+    for one in ast.walk(node):
+        if isinstance(one, ast.Compare) and len(one.ops) == 1:
+            left = ast.unparse(one.left)
+            base = re.sub(r"\[(:|\.\.\.), [01]\]$", "", left)
+            planar |= base != left
+            bounds.setdefault(base, set()).add(type(one.ops[0]).__name__)
+    bounded = sum(kinds >= {"GtE", "LtE"} or kinds >= {"Gt", "Lt"} for kinds in bounds.values())
+    return bounded >= (1 if planar else 2)
+
+
+def _horner_depth(node: ast.AST) -> int:
+    """How many products of a polynomial are nested in each other: x * (a + x * (b + ...))."""
+    match node:
+        case ast.BinOp(_, ast.Mult(), ast.BinOp(_, ast.Add(), inner)):
+            return 1 + _horner_depth(inner)
+    return int(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult))

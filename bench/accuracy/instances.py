@@ -6,16 +6,16 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from bench.accuracy.align import Sim3
 from bench.accuracy.placement import WRONG_CHORD_SHARE, Placement, aligned_point, patch_distance
 from bench.accuracy.truth import Truth
+from core.geometry.similarity import Similarity
 
 
 def score_defects(
     records: list[dict[str, Any]],
     placements: list[Placement],
     truth: Truth,
-    alignments: Mapping[int, Sim3 | None],
+    alignments: Mapping[int, Similarity | None],
 ) -> dict[str, Any]:
     """Count records of `defects.json` over the true defects that have a placeable detection.
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.accuracy.align import Sim3
 from bench.accuracy.truth import TrueBox, Truth
+from core.geometry.boxes import box_iou
+from core.geometry.similarity import Similarity
 
 F64 = NDArray[np.float64]
 
@@ -45,15 +46,6 @@ class Placement:
         return self.true_defect is not None and self.error_mm is not None and not self.wrong
 
 
-def box_iou(a: F64, b: F64) -> float:
-    """Intersection over union of two boxes (x1, y1, x2, y2); 0 when they only touch."""
-    width, height = np.minimum(a[2:], b[2:]) - np.maximum(a[:2], b[:2])
-    if width <= 0 or height <= 0:
-        return 0.0
-    area_a, area_b = (a[2] - a[0]) * (a[3] - a[1]), (b[2] - b[0]) * (b[3] - b[1])
-    return float(width * height / (area_a + area_b - width * height))
-
-
 def true_defect(box_px: F64, visible: list[TrueBox]) -> int | None:
     """The visible defect with the largest IoU, at least 0.2; None for a false box."""
     overlaps = [(box_iou(box_px, item.box_px), -i, item.defect) for i, item in enumerate(visible)]
@@ -62,7 +54,7 @@ def true_defect(box_px: F64, visible: list[TrueBox]) -> int | None:
 
 
 def place_detections(
-    rows: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Sim3 | None]
+    rows: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Similarity | None]
 ) -> list[Placement]:
     """Compare every row of `detections.json` with the truth; `alignments` by model number."""
     scale = np.array([truth.lens.width, truth.lens.height] * 2, np.float64)
@@ -91,7 +83,7 @@ def place_detections(
     return placements
 
 
-def aligned_point(xyz: list[Any], model: Any, alignments: Mapping[int, Sim3 | None]) -> F64 | None:
+def aligned_point(xyz: list[Any], model: Any, alignments: Mapping[int, Similarity | None]) -> F64 | None:
     """(3,) place in the true frame; None without coordinates or without an alignment of its model."""
     sim3 = alignments.get(0 if model in (None, "") else int(model))
     if sim3 is None or any(value is None for value in xyz):

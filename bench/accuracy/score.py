@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.accuracy.align import Sim3, pose_errors, umeyama
+from bench.accuracy.align import pose_errors
 from bench.accuracy.confidence import score_confidence
 from bench.accuracy.instances import persistence_by_record, score_defects
 from bench.accuracy.placement import place_detections, score_placements
@@ -15,6 +15,7 @@ from bench.accuracy.result import Result, ResultModel, load_result
 from bench.accuracy.surface import Reference, make_reference, score_surface
 from bench.accuracy.truth import Truth, load_truth
 from core.errors import BadInput
+from core.geometry.similarity import Similarity, umeyama
 
 
 def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
@@ -52,12 +53,12 @@ def _check_frames(result: Result, truth: Truth) -> None:
         raise BadInput(f"the result uses frame {max(used)}, the truth has {truth.n_frames}", where="frames.csv")
 
 
-def _align(model: ResultModel, truth: Truth) -> Sim3 | None:
+def _align(model: ResultModel, truth: Truth) -> Similarity | None:
     return umeyama(model.centers, truth.centers[model.source_indices])
 
 
 def _score_model(
-    model: ResultModel, sim3: Sim3 | None, truth: Truth, result: Result, reference: Reference | None
+    model: ResultModel, sim3: Similarity | None, truth: Truth, result: Result, reference: Reference | None
 ) -> dict[str, Any]:
     score = {"frames": _frames(set(model.source_indices), truth, result), "cameras": None, "mesh": None, "cloud": None}
     if sim3 is None:

@@ -10,8 +10,8 @@ import open3d as o3d
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bench.accuracy.align import Sim3
 from bench.accuracy.truth import Truth
+from core.geometry.similarity import Similarity
 from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
@@ -95,7 +95,7 @@ def make_reference(truth: Truth, seed: int = 0) -> Reference:
 _NONE: F64 = np.zeros((0, 3))
 
 
-def score_surface(result: Mesh, sim3: Sim3, reference: Reference, seed: int = 1) -> dict[str, Any]:
+def score_surface(result: Mesh, sim3: Similarity, reference: Reference, seed: int = 1) -> dict[str, Any]:
     """Score a mesh, or a cloud (no faces), as it is: distances in mm and precision, recall, F1 per tau."""
     vertices = sim3.apply(result.vertices)
     if not len(vertices):

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import BadInput, StageFailed
+from core.geometry.nearest import nearest_index
 from core.surface.ply import read_mesh
 
 F64 = NDArray[np.float64]
@@ -85,7 +86,7 @@ class Truth:
 
     def frame_at(self, time_s: float) -> int | None:
         """Source frame shown at a time; None outside the clip."""
-        frame = int(np.abs(self.times_s - time_s).argmin())
+        frame = nearest_index(self.times_s.tolist(), time_s)
         spacing = float(np.diff(self.times_s).max(initial=0.0)) or 1.0
         return frame if abs(self.times_s[frame] - time_s) <= spacing / 2 else None
 

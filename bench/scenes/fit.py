@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.accuracy.align import umeyama
 from bench.accuracy.confidence import N_BINS, auroc, calibration_error
 from bench.accuracy.placement import place_detections
 from bench.accuracy.result import load_result
 from bench.accuracy.truth import load_truth
+from core.geometry.similarity import umeyama
 from core.mapping.confidence import Parts, model_right
 
 F64 = NDArray[np.float64]

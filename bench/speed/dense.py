@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from bench.speed.finished import FinishedRun
 from bench.speed.timing import Row, Table, interleaved
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.maps import DenseScene, open_scene
 from core.dense.stereo import PhotometricStereo
 from core.dense.views import DenseView
+from core.geometry.pose import Pose
 
 SOURCES = 4
 NEAR = 0.01
@@ -68,7 +69,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int, n_views: int = 3) ->
 def judge(scene: DenseScene, view: DenseView, depth: F32) -> tuple[float, float]:
     """Shares of the view's sparse points where the map is near, and where it is far; the rest has no depth."""
     pose, pinhole = scene.poses[view.name], scene.pinhole
-    x_in_cam = scene.points[view.name] @ pose.R.T + pose.t
+    x_in_cam = pose.in_camera(scene.points[view.name])
     pixels = np.floor((x_in_cam @ pinhole.matrix().T)[:, :2] / x_in_cam[:, 2:]).astype(int)
     inside = ((pixels >= 0) & (pixels < (pinhole.width, pinhole.height))).all(axis=1) & (x_in_cam[:, 2] > 0)
     found = depth[pixels[inside, 1], pixels[inside, 0]]
@@ -111,8 +112,8 @@ def _pair(scene: DenseScene, view: DenseView, source: str) -> F32:
 
 
 def _relative(reference: Pose, source: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    R = source.R @ reference.R.T
-    return R, (source.t - R @ reference.t)[:, None]  # a column, as OpenCV wants it
+    pose = source.relative_to(reference)
+    return pose.R, pose.t[:, None]  # a column, as OpenCV wants it
 
 
 def _range(shift: float, offset: float, view: DenseView) -> tuple[int, int]:

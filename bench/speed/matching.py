@@ -9,8 +9,8 @@ import torch
 from bench.speed.finished import FinishedRun
 from bench.speed.timing import Row, Table, interleaved
 from core.features.io import FrameFeatures
+from core.matched_pair import LIGHTGLUE, MatchedPair
 from core.matching.auto import PairMatcher
-from core.matching.outcome import LIGHTGLUE, MatchedPair
 from core.matching.pairs import match_pairs
 from core.settings.groups import MatchSettings
 from core.verification import Verifier, read_camera

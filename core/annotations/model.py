@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-Box = tuple[float, float, float, float]
-"""Left, upper, right, lower."""
+from core.geometry.boxes import Box
+
 Polygon = tuple[tuple[float, float], ...]
 """At least three corners (x, y)."""
 

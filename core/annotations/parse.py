@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from core.annotations import checks
-from core.annotations.model import Annotations, Box, Detection, Entry, Mask, Polygon
+from core.annotations.model import Annotations, Detection, Entry, Mask, Polygon
 from core.annotations.read import read_json
+from core.geometry.boxes import Box, box_iou
 
 MIN_MASK_IOU = 0.5
 """A mask with the same label and at least this overlap of boxes belongs to a detection."""
@@ -105,13 +106,3 @@ def bounding_box(polygon: Polygon) -> Box:
     """Smallest box around a polygon."""
     xs, ys = [x for x, _ in polygon], [y for _, y in polygon]
     return (min(xs), min(ys), max(xs), max(ys))
-
-
-def box_iou(a: Box, b: Box) -> float:
-    """Intersection over union of two boxes, in [0, 1]."""
-    width = min(a[2], b[2]) - max(a[0], b[0])
-    height = min(a[3], b[3]) - max(a[1], b[1])
-    if width <= 0 or height <= 0:
-        return 0.0
-    common = width * height
-    return common / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - common)

@@ -11,9 +11,10 @@ from typing import Any
 from core.annotations.checks import shown
 from core.annotations.clocks import Clock, ruler_of
 from core.annotations.convention import Fitted, fit_convention
-from core.annotations.model import Annotations, Box, Mask, Polygon
+from core.annotations.model import Annotations, Mask, Polygon
 from core.errors import BadInput
 from core.flags import Flag
+from core.geometry.boxes import Box
 from core.video.table import FrameTable
 
 MAX_OUTSIDE_SHARE = 0.5

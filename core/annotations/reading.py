@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_left, bisect_right
-from collections.abc import Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from core.annotations.clocks import Clock, Ruler, ruler_of
+from core.geometry.nearest import nearest_index
 from core.video.table import FrameTable
 
 _LAST_DIGIT = re.compile(r"(?:\.(?P<decimals>\d*))?(?:e(?P<exponent>[+-]?\d+))?\s*$", re.IGNORECASE)
@@ -119,14 +120,14 @@ def _assign(
     While the last decimal of the keys is small beside a frame, the nearest frame is meant, however they were
     rounded. Where it is not, a cut key lies nearer to the frame before: the rounding is then fitted over all keys.
     """
-    nearest = {key: _nearest(ruler.times, value) for key, value in values.items()}
+    nearest = {key: nearest_index(ruler.times, value) for key, value in values.items()}
     coarse = [key for key in values if quanta[key] + ruler.slack > ruler.shortest / 2]
     if all(abs(values[key] - ruler.times[nearest[key]]) <= ruler.slack for key in coarse):
         return nearest, ()  # none, or all are times of frames, as whole seconds of a clip of 25 frames/s are
     tried = []
     for shift in _ROUNDINGS:
         centres = {key: value + shift * quanta[key] for key, value in values.items()}
-        frames = {key: _nearest(ruler.times, centre) for key, centre in centres.items()}
+        frames = {key: nearest_index(ruler.times, centre) for key, centre in centres.items()}
         off = {
             key
             for key, centre in centres.items()
@@ -141,12 +142,3 @@ def _assign(
 def _shared(values: Mapping[str, Fraction], frames: Mapping[str, int]) -> tuple[str, ...]:
     taken: dict[int, Fraction] = {}
     return tuple(key for key, frame in frames.items() if taken.setdefault(frame, values[key]) != values[key])
-
-
-def _nearest(times: Sequence[Fraction], value: Fraction) -> int:
-    right = bisect_left(times, value)
-    if right == 0:
-        return 0
-    if right == len(times):
-        return right - 1
-    return right - 1 if value - times[right - 1] <= times[right] - value else right

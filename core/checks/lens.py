@@ -6,33 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.flags import Flag
+from core.geometry.fisheye import viewing_angle
 
 MIN_FOV_DEG = 15.0
 MAX_FOV_DEG = 200.0
 MAX_SHIFT = 0.06
 """A focal length that the last choice of tracks still moves by more than this share may have further to go."""
-MAX_THETA = 2 * np.pi
-"""A fisheye polynomial is followed up to here: beyond any lens, so that a far too short focal length is no fold."""
-
-
-def fisheye_radius(theta: NDArray[np.float64], distortion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """``theta (1 + k1 theta^2 + ... + k4 theta^8)``: distance from the principal point over the focal length."""
-    square = theta**2
-    scale = np.ones_like(theta)
-    for power, k in enumerate(distortion, start=1):
-        scale = scale + k * square**power
-    return np.asarray(theta * scale)
-
-
-def viewing_angle(radius: float, distortion: NDArray[np.float64]) -> float | None:
-    """Angle off the axis (radians) at which the polynomial reaches `radius`; None when it turns back before."""
-    theta = np.linspace(0.0, MAX_THETA, 8001)
-    r = fisheye_radius(theta, distortion)
-    reached = np.flatnonzero(r >= radius)
-    folds = np.flatnonzero(np.diff(r) <= 0)
-    if not len(reached) or (len(folds) and folds[0] < reached[0]):
-        return None
-    return float(np.interp(radius, r[: reached[0] + 1], theta[: reached[0] + 1]))
 
 
 def check_shift(shift: float) -> Flag | None:

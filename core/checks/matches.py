@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.flags import Flag
+from core.geometry.pose import pose_of
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -87,14 +88,14 @@ class _View:
         keypoints = np.array([point.xy for point in image.points2D]).reshape(-1, 2)
         rays = np.asarray(camera.cam_ray_from_img(keypoints)).reshape(-1, 3)
         self.rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
-        self.cam_from_world = np.asarray(image.cam_from_world().matrix())
+        self.pose = pose_of(image)
         self.focal = float(camera.mean_focal_length())
 
 
 def _epipolar_angles(first: _View, second: _View, matches: I64) -> F64:
     """(n,) rad between each match's rays and the other's epipolar plane, the larger of the two; inf behind a camera."""
-    rotation = second.cam_from_world[:, :3] @ first.cam_from_world[:, :3].T
-    shift = second.cam_from_world[:, 3] - rotation @ first.cam_from_world[:, 3]
+    moved = second.pose.relative_to(first.pose)
+    rotation, shift = moved.R, moved.t
     length = float(np.linalg.norm(shift))
     a, b = first.rays[matches[:, 0]] @ rotation.T, second.rays[matches[:, 1]]
     if length < 1e-9:

@@ -14,8 +14,8 @@ from core.checks.lens import check_lens
 from core.checks.matches import check_matches, match_agreement
 from core.checks.parallax import check_planar, largest_angle_deg, model_parallax
 from core.checks.rotations import check_rotations, disagreement, measured_rotations
+from core.checks.stats import ModelStats, model_stats
 from core.flags import Flag, worst
-from core.sparse.mapper import ModelStats, model_stats
 from core.viewgraph import PairTable
 
 SAMPLED_POINTS = 2000

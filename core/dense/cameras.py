@@ -42,19 +42,6 @@ class Pinhole:
         return Pinhole(self.focal_px / 2, self.cx / 2, self.cy / 2, self.width // 2, self.height // 2)
 
 
-@dataclass(frozen=True)
-class Pose:
-    """cam_from_world: x_in_cam = R @ x_in_world + t."""
-
-    R: F64
-    t: F64
-
-    @property
-    def center(self) -> F64:
-        """(3,) position of the camera in the world."""
-        return np.asarray(-self.R.T @ self.t)
-
-
 def choose_pinhole(camera: Any, settings: DenseSettings) -> Pinhole:
     """The pinhole that shows what the lens shows, down to a bound on peripheral stretch.
 

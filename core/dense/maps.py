@@ -11,9 +11,10 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.views import DenseView, read_views
 from core.errors import StageFailed
+from core.geometry.pose import Pose, pose_of
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -94,8 +95,7 @@ def open_scene(folder: Path) -> DenseScene:
     )
     poses, points = {}, {}
     for _, image in sorted(model.images.items()):
-        matrix = np.asarray(image.cam_from_world().matrix())
-        poses[image.name] = Pose(matrix[:, :3], matrix[:, 3])
+        poses[image.name] = pose_of(image)
         ids = sorted({o.point3D_id for o in image.get_observation_points2D()})
         points[image.name] = np.array([model.points3D[i].xyz for i in ids], dtype=np.float64).reshape(-1, 3)
     return DenseScene(folder, pinhole, poses, points, tuple(read_views(folder / "views.json")))

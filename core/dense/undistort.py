@@ -12,6 +12,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.dense.cameras import Pinhole
+from core.geometry.boxes import in_box
 
 F32 = NDArray[np.float32]
 U8 = NDArray[np.uint8]
@@ -42,8 +43,7 @@ def undistort_map(camera: Any, pinhole: Pinhole) -> UndistortMap:
     pixels = np.asarray(camera.img_from_cam(rays), dtype=np.float64)
     inside = np.isfinite(pixels).all(axis=1)
     pixels[~inside] = -1.0
-    inside &= (pixels >= 0.5).all(axis=1)
-    inside &= (pixels[:, 0] <= camera.width - 0.5) & (pixels[:, 1] <= camera.height - 0.5)
+    inside &= in_box(pixels, (0.5, 0.5, camera.width - 0.5, camera.height - 0.5))
     shape = (pinhole.height, pinhole.width)
     # COLMAP's pixel centres are at 0.5, OpenCV's remap wants array indices.
     index = (pixels - 0.5).astype(np.float32)
@@ -94,6 +94,5 @@ def _undistorted_observations(image: Any, camera: Any, pinhole: Pinhole) -> tupl
     ids = np.array(list(seen))
     rays = np.asarray(camera.cam_from_img(np.array(list(seen.values()))), dtype=np.float64)
     pixels = rays * pinhole.focal_px + [pinhole.cx, pinhole.cy]
-    with np.errstate(invalid="ignore"):
-        inside = ((pixels > 0) & (pixels < [pinhole.width, pinhole.height])).all(axis=1)
+    inside = in_box(pixels, (0, 0, pinhole.width, pinhole.height), border=False)
     return [int(i) for i in ids[inside]], pixels[inside]

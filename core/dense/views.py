@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.dense.cameras import Pose
+from core.geometry.pose import Pose, pose_of
 from core.settings.groups import DenseSettings
 
 F64 = NDArray[np.float64]
@@ -58,8 +58,7 @@ def sparse_views(model: Any) -> SparseViews:
     poses, visible = [], []
     for image_id in ids:
         image = model.images[image_id]
-        matrix = np.asarray(image.cam_from_world().matrix())
-        poses.append(Pose(matrix[:, :3], matrix[:, 3]))
+        poses.append(pose_of(image))
         observed = {row[o.point3D_id] for o in image.get_observation_points2D() if o.point3D_id in row}
         visible.append(np.array(sorted(observed), dtype=np.int64))
     points = np.array([model.points3D[i].xyz for i in point_ids]).reshape(-1, 3)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import Box, in_box
 from core.mapping.candidates import MIN_SHARE, Candidate, choose, is_witnessed
 from core.mapping.confidence import Parts
 from core.mapping.consensus import Testimony, testimony
@@ -16,7 +17,6 @@ from core.mapping.patches import Patch, split_patches
 from core.mapping.pixels import Footprint
 from core.mapping.scene import Scene, places_nearest
 from core.mapping.sigma import place_sigma
-from core.mapping.support import Box
 from core.mapping.support_check import depth_agreement
 from core.mapping.surface import Hits
 
@@ -216,7 +216,6 @@ def _sparse_in_box(scene: Scene, sight: Sight) -> _Sparse:
     if sight.view is None:
         return _Sparse(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
     xy, ids, points = scene.sparse.of(int(scene.views.frame_index[sight.view]))
-    x1, y1, x2, y2 = sight.box_px
-    inside = (xy[:, 0] >= x1) & (xy[:, 0] <= x2) & (xy[:, 1] >= y1) & (xy[:, 1] <= y2)
+    inside = in_box(xy, sight.box_px)
     distance = np.linalg.norm(points[inside] - sight.origin, axis=1)
     return _Sparse(ids[inside], points[inside], distance)

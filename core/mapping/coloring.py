@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.geometry.boxes import in_box
+
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -55,7 +57,7 @@ def vertex_weights(vertices: F64, points: F64, radius: float, sigma: float, thre
     if not len(points) or not len(vertices):
         return Coloring(weight, point)
     low, high = points.min(axis=0) - radius, points.max(axis=0) + radius
-    near = np.flatnonzero(((vertices >= low) & (vertices <= high)).all(axis=1))
+    near = np.flatnonzero(in_box(vertices, (*low, *high)))
     if len(near):
         # The tree's bound is exclusive, the ball is closed.
         bound = np.nextafter(radius, np.inf)

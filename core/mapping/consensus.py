@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.mapping.support import Box
+from core.geometry.boxes import Box, in_box
 from core.mapping.surface import Surface
 from core.mapping.views import Views
 
@@ -98,9 +98,8 @@ def could_see(
     """
     chosen = Views(views.frame_index[rows], views.R[rows], views.t[rows], views.camera)
     xy, seen = chosen.project(places)
-    with np.errstate(invalid="ignore"):
-        seen &= (xy > RIM_PX).all(axis=2)
-        seen &= (xy[..., 0] < views.camera.width - RIM_PX) & (xy[..., 1] < views.camera.height - RIM_PX)
+    right, lower = views.camera.width - RIM_PX, views.camera.height - RIM_PX
+    seen &= in_box(xy, (RIM_PX, RIM_PX, right, lower), border=False)
     towards = chosen.centers[None] - places[:, None]
     cosine = np.einsum("nfi,ni->nf", towards, normals) / np.maximum(np.linalg.norm(towards, axis=2), 1e-300)
     seen &= cosine > np.cos(np.radians(MAX_INCIDENCE_DEG))
@@ -128,7 +127,7 @@ def testimony(
         if not len(asked) or not len(boxes):
             continue
         at = xy[asked, k][:, None]
-        inside = ((at >= boxes[None, :, :2]) & (at <= boxes[None, :, 2:])).all(axis=2)
+        inside = in_box(at, boxes)
         supports[asked, k] = inside.any(axis=1)
         equal = np.array([[name == labels[i] for name in names] for i in asked.tolist()])
         same[asked, k] = (inside & equal).any(axis=1)

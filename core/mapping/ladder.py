@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
+from core.geometry.boxes import in_box
 from core.mapping.casting import Sight
 from core.mapping.scene import Scene
 from core.mapping.views import Views
@@ -53,8 +54,7 @@ def from_sparse_points(scene: Scene, sight: Sight) -> Estimate | None:
     if sight.view is None:
         return None
     xy, _, points = scene.sparse.of(int(scene.views.frame_index[sight.view]))
-    x1, y1, x2, y2 = sight.box_px
-    inside = (xy[:, 0] >= x1) & (xy[:, 0] <= x2) & (xy[:, 1] >= y1) & (xy[:, 1] <= y2)
+    inside = in_box(xy, sight.box_px)
     if inside.sum() < MIN_POINTS:
         return None
     distance = np.linalg.norm(points[inside] - sight.origin, axis=1)

@@ -12,12 +12,14 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.maps import map_paths, open_scene, read_map
+from core.geometry.boxes import Box
+from core.geometry.pose import Pose
 from core.mapping.consensus import looked_at
 from core.mapping.depth_witness import DepthMaps
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal, oriented
-from core.mapping.support import Box, open_model, read_sparse_model
+from core.mapping.support import open_model, read_sparse_model
 from core.mapping.surface import Surface
 from core.mapping.surface_rules import Matches
 from core.mapping.views import Views, views_of
@@ -101,7 +103,7 @@ def distances_in_map(depth: NDArray[np.float32], pinhole: Pinhole, pose: Pose, p
         (n,) distance of the map's surface from the projection centre (0 = none), by the pixel that shows each
         point, and (n,) distance of the point itself.
     """
-    in_cam = points @ pose.R.T + pose.t
+    in_cam = pose.in_camera(points)
     own: F64 = np.linalg.norm(in_cam, axis=1)
     z = in_cam[:, 2]
     ahead = z > 1e-6 * np.maximum(own, 1e-300)

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from core.mapping.support import Box
+from core.geometry.boxes import Box, in_box
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -63,7 +63,7 @@ def footprint(
     xy, cell = xy[inside], cell[inside]
     if polygon is not None and len(xy) < MIN_CELLS:  # a sliver of a mask, thinner than the grid
         xy, cell = _along_outline(polygon, low, step, counts)
-    on_frame = (xy > 0).all(axis=1) & (xy[:, 0] < width) & (xy[:, 1] < height)
+    on_frame = in_box(xy, (0, 0, width, height), border=False)
     return Footprint(xy[on_frame], cell[on_frame], float(step.max()), len(xy), "box" if polygon is None else "mask")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.geometry.pose import transform
 from core.mapping.consensus import LookedAt
 from core.mapping.depth_witness import DepthMaps
 from core.mapping.sigma import PoseCovariance, pose_covariance
@@ -69,7 +70,7 @@ class Scene:
     def pose_covariance(self, view: int) -> PoseCovariance | None:
         """Of a registered view, by its sparse observations."""
         xy, _, points = self.sparse.of(int(self.views.frame_index[view]))
-        in_cam = points @ self.views.R[view].T + self.views.t[view]
+        in_cam = transform(points, self.views.R[view], self.views.t[view])
         in_front = in_cam[:, 2] > 0
         in_cam, xy = in_cam[in_front], xy[in_front]
         if len(in_cam) < 6:

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.json_files import read_json, write_json
 from core.mapping.confidence import Parts
 from core.mapping.rows import DetectionRow
 from core.mapping.surface_rules import Observation
-from core.report.tables import read_json, write_json
 
 F64 = NDArray[np.float64]
 

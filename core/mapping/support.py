@@ -13,12 +13,12 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.errors import StageFailed
+from core.geometry.boxes import Box, in_box
 from core.mapping.rows import Detection
 from core.roi import Crop
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
-Box = tuple[float, float, float, float]
 
 
 def box_in_crop_px(box: Box, crop: Crop, box_frame: Literal["source", "crop"]) -> Box:
@@ -73,9 +73,7 @@ class Observations:
 
     def inside(self, box_px: Box) -> I64:
         """Sorted unique ids of the 3D points whose keypoints lie inside the box, its border included."""
-        x1, y1, x2, y2 = box_px
-        x, y = self.xy[:, 0], self.xy[:, 1]
-        return np.unique(self.point_ids[(x >= x1) & (x <= x2) & (y >= y1) & (y <= y2)])
+        return np.unique(self.point_ids[in_box(self.xy, box_px)])
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
+from core.geometry.pose import transform
 from core.mapping.casting import Cast, Missed, Sight, cast_sights
 from core.mapping.confidence import Parts
 from core.mapping.ladder import (
@@ -194,11 +196,11 @@ def _sight_like(number: int, detection: Detection, samples: Footprint, scene: Sc
 
 def _moved(sight: Sight, carried: F64, scene: Scene, view: int) -> Sight:
     """The same pixels in a registered view."""
-    xy = sight.samples.xy @ carried[:, :2].T + carried[:, 2]
-    inside = (xy > 0).all(axis=1) & (xy[:, 0] < scene.crop.width) & (xy[:, 1] < scene.crop.height)
+    xy = transform(sight.samples.xy, carried[:, :2], carried[:, 2])
+    inside = in_box(xy, (0, 0, scene.crop.width, scene.crop.height), border=False)
     samples = replace(sight.samples, xy=xy[inside], cell=sight.samples.cell[inside])
     x1, y1, x2, y2 = sight.box_px
-    corners = np.array([[x1, y1], [x2, y1], [x1, y2], [x2, y2]]) @ carried[:, :2].T + carried[:, 2]
+    corners = transform(np.array([[x1, y1], [x2, y1], [x1, y2], [x2, y2]]), carried[:, :2], carried[:, 2])
     low, high = corners.min(axis=0), corners.max(axis=0)
     box = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
     return replace(

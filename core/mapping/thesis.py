@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import Box
+from core.geometry.nearest import nearest_index
 from core.mapping.rows import Detection, DetectionRow, mapped_row, unplaced_row
-from core.mapping.support import Box, SparseModel, box_in_crop_px, overlaps_crop
+from core.mapping.support import SparseModel, box_in_crop_px, overlaps_crop
 from core.roi import Crop
 from core.settings.groups import MappingSettings
 
@@ -71,13 +73,13 @@ def match_frames(detections: Sequence[Detection], frames: FrameTimes, tolerance_
     asked = [d for d in detections if d.source_index is not None]
     if not len(order) or not asked:
         return {}
-    times = frames.time_s[order]
-    wanted = np.array([d.time_s for d in asked])
-    after = np.clip(np.searchsorted(times, wanted), 0, len(times) - 1)
-    before = np.clip(after - 1, 0, None)
-    nearest = np.where(np.abs(times[before] - wanted) <= np.abs(times[after] - wanted), before, after)
-    close = np.abs(times[nearest] - wanted) < tolerance_s
-    return {d.id: int(frames.index[order[k]]) for d, k, ok in zip(asked, nearest, close, strict=True) if ok}
+    times = frames.time_s[order].tolist()
+    nearest = [nearest_index(times, d.time_s) for d in asked]
+    return {
+        d.id: int(frames.index[order[k]])
+        for d, k in zip(asked, nearest, strict=True)
+        if abs(times[k] - d.time_s) < tolerance_s
+    }
 
 
 def place_detections(

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from core.mapping.support import Box, observations_of
+from core.geometry.boxes import Box
+from core.mapping.support import observations_of
 
 MIN_POINTS = 3
 """Points in a box that make it more than a chance match, as for `core.mapping.support_check`."""

@@ -9,6 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
+from core.geometry.pose import camera_centers
+
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
@@ -29,8 +32,7 @@ class Views:
     @property
     def centers(self) -> F64:
         """(f, 3) projection centres."""
-        centers: F64 = -np.einsum("fji,fj->fi", self.R, self.t)
-        return centers
+        return camera_centers(self.R, self.t)
 
     def row(self, frame_index: int) -> int | None:
         """Row of a frame; None when it is not registered."""
@@ -56,8 +58,7 @@ class Views:
         xy = np.full((len(flat), 2), np.nan)
         if before.any():
             xy[before] = np.asarray(self.camera.img_from_cam(np.ascontiguousarray(flat[before])))
-        with np.errstate(invalid="ignore"):
-            inside = (xy >= 0).all(axis=1) & (xy[:, 0] <= self.camera.width) & (xy[:, 1] <= self.camera.height)
+        inside = in_box(xy, (0, 0, self.camera.width, self.camera.height))
         shape = in_cam.shape[:2]
         return xy.reshape(*shape, 2), (inside & before).reshape(shape)
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
+from core.matched_pair import LIGHTGLUE, MUTUAL_NEAREST, MatchedPair
 from core.matching.mutual_nearest import Matches, mutual_nearest, unit_descriptors
-from core.matching.outcome import LIGHTGLUE, MUTUAL_NEAREST, MatchedPair
 from core.settings.groups import FeatureSettings, MatchSettings
 from core.verification import STRONG_INLIERS, Verifier
 

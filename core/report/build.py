@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from core.json_files import write_json
 from core.mapping.rows import DETECTION_COLUMNS
 from core.report.quality import Verdict, build_quality, collect_flags, verdict_of
 from core.report.record import RunRecord
 from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
 from core.report.summary import build_summary
-from core.report.tables import write_csv, write_json
+from core.report.tables import write_csv
 from core.timeline.events import TIMELINE_COLUMNS
 
 Row = Mapping[str, Any]

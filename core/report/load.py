@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
+from core.json_files import read_json
 from core.report.models import join_detections, join_lists
 from core.report.record import RunTables
-from core.report.tables import read_json
 from core.stage import key_of, piece_of, stage_of
 
 

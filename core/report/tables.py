@@ -1,8 +1,7 @@
-"""Writers of the published tables: RFC 4180 CSV and finite JSON."""
+"""Writer of the published tables in RFC 4180 CSV."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,18 +9,6 @@ from typing import Any
 from core.report.csv_form import csv_line
 
 SCHEMA_VERSION = 1
-
-
-def write_json(path: Path, value: Any) -> None:
-    """Write JSON in UTF-8, keys in their given order; ValueError for a number that is not finite."""
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text + "\n", encoding="utf-8", newline="\n")
-
-
-def read_json(path: Path) -> Any:
-    """Read a JSON file in UTF-8."""
-    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def write_csv(path: Path, columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
+from core.checks.stats import model_stats
 from core.sparse.keypoint_alignment import Aligned
 from core.sparse.lens_trial import (
     TRIAL_POINTS,
@@ -27,7 +28,6 @@ from core.sparse.lens_trial import (
     judge_radial_terms,
     try_lens,
 )
-from core.sparse.mapper import model_stats
 from core.sparse.points import move_points, observe
 from core.sparse.trimming import (
     POINT_LOSS_PX,

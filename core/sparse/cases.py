@@ -6,18 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from core.checks.stats import ModelStats, model_stats
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, free_distortion, transfer_poses, triangulate
 from core.sparse.initial_pair import rank_initial_pairs
-from core.sparse.mapper import (
-    ModelStats,
-    Progress,
-    best_model,
-    map_images,
-    mapper_options,
-    model_stats,
-    open_cache,
-)
+from core.sparse.mapper import Progress, best_model, map_images, mapper_options, open_cache
 from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import Tracks, build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import Frames, read_frames, within

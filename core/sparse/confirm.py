@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Literal
 
+from core.checks.stats import ModelStats, model_stats
 from core.sparse.cases import Case, run_case
-from core.sparse.mapper import ModelStats, Progress, model_stats
+from core.sparse.mapper import Progress
 
 CONFIRM_TRACKS = 1000
 """Keypoints per image that take part when the search takes all; on these COLMAP's own settings are affordable."""

@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 import pycolmap
 
+from core.checks.stats import model_stats
 from core.features.io import FrameFeatures
 from core.matching.auto import PairMatcher
 from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
 from core.settings import Settings
 from core.sparse.initial_pair import rank_initial_pairs
-from core.sparse.mapper import best_model, map_images, mapper_options, model_stats
+from core.sparse.mapper import best_model, map_images, mapper_options
 from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import build_tracks, thin_cache
 from core.sparse.view_graph import Frames, within

@@ -16,10 +16,12 @@ import pycolmap
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from core.checks.stats import model_stats
+from core.geometry.similarity import Similarity
 from core.settings.groups import MapperSettings
 from core.sparse.cases import MIN_MATCHES, Case, run_case
 from core.sparse.densify import densify, transfer_poses
-from core.sparse.mapper import mapper_options, model_stats, open_cache
+from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.pieces import groups_of
 from core.sparse.tracks import build_tracks
 from core.sparse.view_graph import read_frames
@@ -41,17 +43,6 @@ MAX_SCALE = 0.05
 Outcome = Literal["joined", "no_model", "no_shared_images", "disagree", "vetoed", "not_better"]
 
 _NO_MODEL: Outcome = "no_model"
-
-
-@dataclass(frozen=True)
-class Similarity:
-    """``x_first = scale * rotation x_second + shift``."""
-
-    scale: float
-    rotation: F64
-    """(3, 3)"""
-    shift: F64
-    """(3,)"""
 
 
 @dataclass(frozen=True)
@@ -113,7 +104,7 @@ def _scale(first: F64, turned: F64) -> float:
 
 def holds(similarity: Similarity, first: Poses, second: Poses) -> bool:
     """Whether a similarity fits images that it was not fitted on."""
-    moved = similarity.scale * second.centers @ similarity.rotation.T + similarity.shift
+    moved = similarity.apply(second.centers)
     extent = float(np.linalg.norm(np.ptp(first.centers, axis=0)))
     turned = first.rotations @ similarity.rotation @ np.swapaxes(second.rotations, 1, 2)
     angle = float(np.degrees(np.median(Rotation.from_matrix(turned).magnitude())))

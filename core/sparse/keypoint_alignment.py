@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.geometry.pose import camera_centers
 from core.sparse.alignment_kernels import align_patches, take_patches
 from core.sparse.points import poses_of
 
@@ -97,8 +98,7 @@ class _Views:
     @property
     def centers(self) -> F64:
         """(f, 3)"""
-        centers: F64 = -np.einsum("fji,fj->fi", self.R, self.t)
-        return centers
+        return camera_centers(self.R, self.t)
 
 
 def align_keypoints(

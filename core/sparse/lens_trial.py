@@ -14,7 +14,7 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
-from core.sparse.mapper import model_stats
+from core.checks.stats import model_stats
 from core.sparse.points import observe
 from core.sparse.trimming import whole
 

@@ -10,20 +10,16 @@ from __future__ import annotations
 import copy
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pycolmap
 
+from core.checks.stats import model_stats
 from core.settings.groups import MapperSettings
 
 Progress = Callable[[int, int], None]
 """Called with (registered images, images offered); may raise to stop the mapping."""
-
-FAR_PX = 1e6
-"""A point with a larger mean reprojection error lies at or behind infinity and says nothing about the model."""
 
 WHOLE_SHARE = 0.9
 """A model with at least this share of the images is taken as whole: no other initial pair is tried."""
@@ -33,22 +29,6 @@ ENOUGH_SHARE = 0.5
 
 PAIR_ANGLE_DEG = 1.0
 """Least median triangulation angle of a given initial pair, which was ranked by its angle already."""
-
-
-@dataclass(frozen=True)
-class ModelStats:
-    """What a sparse model is judged by. Errors are over points with a finite mean error."""
-
-    registered_images: int
-    points3D: int  # noqa: N815 (COLMAP's and the contract's name)
-    mean_reprojection_error_px: float
-    median_reprojection_error_px: float
-    mean_track_length: float
-
-    @property
-    def score(self) -> tuple[int, int]:
-        """The thesis's score S(M) = (registered images, 3D points), compared lexicographically."""
-        return self.registered_images, self.points3D
 
 
 def open_cache(database: Path, names: Iterable[str] = (), min_num_matches: int = 15) -> Any:
@@ -132,24 +112,6 @@ def map_images(
 def best_model(models: Sequence[Any]) -> Any | None:
     """The model with the highest score; the first of equals; None when there is none."""
     return max(models, key=lambda model: model_stats(model).score, default=None)
-
-
-def model_stats(model: Any) -> ModelStats:
-    """Registered images, points and errors of a model; its points' errors are computed anew."""
-    model.update_point_3d_errors()
-    points = model.points3D.values()
-    errors = np.array([point.error for point in points], dtype=np.float64)
-    lengths = np.array([point.track.length() for point in points], dtype=np.int64)
-    near = np.isfinite(errors) & (errors >= 0) & (errors < FAR_PX)
-    if not near.any():
-        return ModelStats(int(model.num_reg_images()), 0, 0.0, 0.0, 0.0)
-    return ModelStats(
-        registered_images=int(model.num_reg_images()),
-        points3D=int(near.sum()),
-        mean_reprojection_error_px=float(errors[near].mean()),
-        median_reprojection_error_px=float(np.median(errors[near])),
-        mean_track_length=float(lengths[near].mean()),
-    )
 
 
 def registered_names(model: Any) -> list[str]:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.fisheye import fisheye_radius_and_slope
 from core.jit import compiled
 
 F64 = NDArray[np.float64]
@@ -150,9 +151,7 @@ def _project(place: Any, R: Any, t: Any, lens: Any, jacobian: Any) -> tuple[floa
     # On the axis the direction from it is any; the limit is that of a very small radius.
     radius = max(np.sqrt(x * x + y * y), 1e-9 * abs(z), 1e-150)
     theta = np.arctan2(radius, z)
-    t2 = theta * theta
-    bent = theta * (1.0 + t2 * (lens[4] + t2 * (lens[5] + t2 * (lens[6] + t2 * lens[7]))))
-    slope = 1.0 + t2 * (3.0 * lens[4] + t2 * (5.0 * lens[5] + t2 * (7.0 * lens[6] + t2 * 9.0 * lens[7])))
+    bent, slope = fisheye_radius_and_slope(theta, lens[4], lens[5], lens[6], lens[7])
     scale = bent / radius
     square = radius * radius + z * z
     # The two ways in which the pixel's distance from the centre changes: by the radius and by the depth.

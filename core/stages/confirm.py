@@ -8,9 +8,9 @@ from typing import Any
 import pycolmap
 
 from core.checks.model import is_wrong
+from core.checks.stats import model_stats
 from core.sparse.cases import Case
 from core.sparse.confirm import confirmed_or_searched
-from core.sparse.mapper import model_stats
 from core.stage import StageResult, StageTask
 from core.viewgraph import read_table
 

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from core.checks.lens import check_shift
 from core.checks.model import check_model, is_wrong
+from core.checks.stats import model_stats
 from core.errors import StageFailed
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.keypoint_alignment import align_keypoints
 from core.sparse.loose import drop_faint_frames, drop_loose_ends
-from core.sparse.mapper import mapper_options, model_stats, open_cache
+from core.sparse.mapper import mapper_options, open_cache
 from core.stage import Facts, StageResult, StageTask
 from core.video.still import read_mask
 from core.viewgraph import PairTable, read_table

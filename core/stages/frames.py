@@ -9,10 +9,10 @@ import numpy as np
 
 from core.annotations.placed import load_detections
 from core.flags import Flag
+from core.frames.export import export_frames, image_name
+from core.frames.sampling import choose_frames, clip_interval
 from core.roi import crop_of
-from core.sampling import choose_frames, clip_interval
 from core.stage import StageResult, StageTask
-from core.video.export import export_frames, image_name
 from core.video.still import find_still, write_mask
 from core.video.table import FrameTable
 

@@ -14,10 +14,10 @@ from core.gallery.defects import DefectLine, defect_lines
 from core.gallery.evidence import Evidence, draw_evidence, evidence_of
 from core.gallery.page import gallery_page
 from core.gallery.palette import RGB, label_colors
+from core.json_files import read_json
 from core.mapping.rows import DetectionRow
 from core.render import Renderer
 from core.report.models import join_detections, join_lists
-from core.report.tables import read_json
 from core.stage import StageResult, StageTask, stage_of
 from core.surface.ply import read_mesh
 from core.video.decode import VideoReader

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from core.json_files import read_json, write_json
 from core.mapping.coloring import coloring_radius, vertex_weights
 from core.mapping.depth_witness import no_depth_maps
 from core.mapping.load import matches_of_graph, open_depth_maps, open_mapping_scene
@@ -16,7 +17,6 @@ from core.mapping.store import write_observations
 from core.mapping.support import SparseModel, boxes_by_frame, read_sparse_model
 from core.mapping.surface_rules import Observation, Times, place_on_surface
 from core.mapping.thesis import FrameTimes, Placement, place_detections
-from core.report.tables import read_json, write_json
 from core.roi import Crop
 from core.stage import Facts, StageResult, StageTask
 from core.surface.ply import Mesh, read_mesh, write_cloud

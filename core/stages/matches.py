@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import torch
 
 from core.features.io import FrameFeatures, feature_files, read_features
+from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher, Patience
-from core.matching.outcome import MatchedPair
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
 from core.verification import Verifier, read_camera

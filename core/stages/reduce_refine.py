@@ -5,10 +5,10 @@ from __future__ import annotations
 import shutil
 from collections.abc import Sequence
 
+from core.json_files import read_json
 from core.mapping.rows import Detection
 from core.mapping.support import boxes_by_frame, open_model
 from core.mapping.verified import verified_detections
-from core.report.tables import read_json
 from core.roi import Crop
 from core.sparse.reduce import Row, case_rows, find_row, reduce_refined
 from core.stage import StageResult, StageTask

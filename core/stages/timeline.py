@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from core.json_files import read_json, write_json
 from core.mapping.coloring import blend
 from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
-from core.report.tables import read_json, write_json
 from core.stage import StageResult, StageTask, key_of
 from core.stages.map_defects import open_scene_of, world_comments
 from core.surface.glb import vertex_normals, write_glb

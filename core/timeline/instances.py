@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.geometry.boxes import box_iou
 from core.mapping.surface_rules import Observation
 
 F64 = NDArray[np.float64]
@@ -130,12 +131,8 @@ def _join(a: _Group, b: _Group) -> None:
 
 def overlap(a: Observation, b: Observation) -> float:
     """Intersection over union of the boxes of two rows."""
-    width = min(a.row.box_x2, b.row.box_x2) - max(a.row.box_x1, b.row.box_x1)
-    height = min(a.row.box_y2, b.row.box_y2) - max(a.row.box_y1, b.row.box_y1)
-    if width <= 0 or height <= 0:
-        return 0.0
-    areas = [(o.row.box_x2 - o.row.box_x1) * (o.row.box_y2 - o.row.box_y1) for o in (a, b)]
-    return width * height / (sum(areas) - width * height)
+    one, two = ((o.row.box_x1, o.row.box_y1, o.row.box_x2, o.row.box_y2) for o in (a, b))
+    return box_iou(one, two)
 
 
 def fused_place(observations: Sequence[Observation]) -> tuple[F64, float]:

@@ -13,6 +13,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
 from core.mapping.support import box_in_crop_px
 from core.mapping.surface_rules import Observation
 from core.mapping.views import Views
@@ -95,7 +96,5 @@ def _in_boxes(place: F64, group: Sequence[Observation], views: Views, crop: Crop
         if row is None:
             continue
         box = (one.row.box_x1, one.row.box_y1, one.row.box_x2, one.row.box_y2)
-        x1, y1, x2, y2 = box_in_crop_px(box, crop, "source")
-        x, y = xy[0, row]
-        hits.append(bool(seen[0, row]) and x1 <= x <= x2 and y1 <= y <= y2)
+        hits.append(bool(seen[0, row] and in_box(xy[0, row], box_in_crop_px(box, crop, "source"))))
     return float(np.mean(hits)) if hits else 0.0

@@ -11,6 +11,9 @@ import numpy as np
 import open3d as o3d
 from numpy.typing import NDArray
 
+from core.geometry.boxes import in_box
+from core.geometry.pose import camera_center, transform
+
 F64 = NDArray[np.float64]
 
 MIN_VISIBLE_SHARE = 0.5
@@ -30,9 +33,7 @@ class View:
     @property
     def center(self) -> F64:
         """(3,) projection centre in the world."""
-        R, t = self.cam_from_world[:, :3], self.cam_from_world[:, 3]
-        center: F64 = -R.T @ t
-        return center
+        return camera_center(self.cam_from_world[:, :3], self.cam_from_world[:, 3])
 
 
 @dataclass(frozen=True)
@@ -113,12 +114,9 @@ def sightings(
 
 
 def _visible_share(points: F64, view: View, occlusion: Occlusion, tolerance: float) -> float:
-    R, t = view.cam_from_world[:, :3], view.cam_from_world[:, 3]
-    in_camera = points @ R.T + t
+    in_camera = transform(points, view.cam_from_world[:, :3], view.cam_from_world[:, 3])
     xy = np.asarray(view.camera.img_from_cam(in_camera), dtype=np.float64)
-    with np.errstate(invalid="ignore"):
-        inside = (xy >= 0).all(axis=1) & (xy[:, 0] <= view.camera.width) & (xy[:, 1] <= view.camera.height)
-    inside &= in_camera[:, 2] > 0
+    inside = in_box(xy, (0, 0, view.camera.width, view.camera.height)) & (in_camera[:, 2] > 0)
     if inside.mean() < MIN_VISIBLE_SHARE:
         return 0.0
     clear = occlusion.clear(view.center, points[inside], tolerance)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from bisect import bisect_left
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import StageFailed
+from core.geometry.nearest import nearest_index
 
 _COLUMNS = ("index", "pts", "time_s", "keyframe", "sha256")
 
@@ -103,12 +103,7 @@ class FrameTable:
     def nearest(self, time_s: Fraction) -> int:
         """Index of the frame nearest to a time; the earlier one when two are equally near."""
         units = time_s / self.info.time_base + self._pts[0]
-        right = bisect_left(self._pts, units)
-        if right == 0:
-            return 0
-        if right == len(self._pts):
-            return right - 1
-        return right - 1 if units - self._pts[right - 1] <= self._pts[right] - units else right
+        return nearest_index(self._pts, units)
 
     def frame_at(self, time_s: Fraction) -> int | None:
         """The frame nearest to a time within the video; None outside it.

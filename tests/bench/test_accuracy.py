@@ -7,11 +7,12 @@ from scipy.spatial.transform import Rotation
 
 from bench.accuracy import surface
 from bench.accuracy.confidence import auroc, calibration_error
-from bench.accuracy.placement import box_iou, true_defect
+from bench.accuracy.placement import true_defect
 from bench.accuracy.score import score_result
 from bench.accuracy.truth import TrueBox
 from bench.main import main
 from core.errors import BadInput
+from core.geometry.boxes import box_iou
 from tests.bench import synthetic
 
 CENTERS = [np.array(row["surface_center"]) for row in synthetic.defects()[:2]]

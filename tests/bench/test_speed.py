@@ -15,9 +15,10 @@ from bench.speed.finished import FinishedRun
 from bench.speed.matching import draw_pairs
 from bench.speed.timing import Row, Table, Timing, interleaved
 from bench.speed.windows import choose_windows
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.maps import DenseScene
 from core.dense.views import DenseView
+from core.geometry.pose import Pose
 from core.settings import make_settings
 from core.surface.ply import Mesh
 

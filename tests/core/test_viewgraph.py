@@ -7,7 +7,7 @@ import pycolmap
 import pytest
 
 from core.errors import StageFailed
-from core.matching.outcome import MatchedPair
+from core.matched_pair import MatchedPair
 from core.settings import make_settings
 from core.verification import Verifier
 from core.viewgraph import (

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
+from core.geometry.pose import Pose
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -47,7 +48,7 @@ def _from_points(
 ) -> tuple[F64, F64]:
     """Inverse depth (n,) and its gradient (n, 2) at (n, 2) pixels."""
     gradient = np.zeros((len(pixels), 2))
-    X = points @ pose.R.T + pose.t
+    X = pose.in_camera(points)
     X = X[X[:, 2] > 0]
     if not len(X):
         return np.full(len(pixels), sum(limits) / 2), gradient

@@ -12,11 +12,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.patchmatch.kernels import RADIUS, Patch, Sources, pack, scratch
 from core.dense.patchmatch.planes import upsample
 from core.dense.patchmatch.smooth import fit_rows
 from core.dense.patchmatch.sweep import offer_rows, score_rows, sweep_rows
+from core.geometry.pose import Pose
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -91,8 +92,8 @@ def relate(
     inverse_K = np.linalg.inv(K)
     A, b, back, shift = [], [], [], []
     for pose in sources:
-        R = pose.R @ reference.R.T
-        t = pose.t - R @ reference.t
+        moved = pose.relative_to(reference)
+        R, t = moved.R, moved.t
         A.append(K @ R @ inverse_K)
         b.append(K @ t)
         back.append(K @ R.T @ inverse_K)

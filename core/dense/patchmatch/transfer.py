@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.patchmatch.jit import kernel
+from core.geometry.pose import Pose
 
 F32 = NDArray[np.float32]
 
@@ -58,8 +59,8 @@ def planes_from_source(
     ``R^T pi / (1 - pi . t)`` in the reference's.
     """
     K = pinhole.index_matrix()
-    R = source.R @ reference.R.T
-    t = source.t - R @ reference.t
+    moved = source.relative_to(reference)
+    R, t = moved.R, moved.t
     inverse_K = np.linalg.inv(K)
     out = np.zeros_like(planes)
     M = inverse_K.T @ R.T @ K.T

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 
 from core.annotations.checks import parse_time
 from core.annotations.model import Annotations, Mask
-from core.annotations.parse import box_iou, load_annotations, matching_mask, parse_annotations
+from core.annotations.parse import load_annotations, matching_mask, parse_annotations
 from core.annotations.read import MAX_BYTES, parse_json
 from core.annotations.summary import summarise
 from core.errors import BadInput
+from core.geometry.boxes import box_iou
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "turbine.json"
 DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}

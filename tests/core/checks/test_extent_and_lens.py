@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from core.checks.extent import check_coverage, check_points, check_reprojection
-from core.checks.lens import check_lens, check_shift, fisheye_radius, viewing_angle
+from core.checks.lens import check_lens, check_shift
+from core.geometry.fisheye import fisheye_radius, viewing_angle
 
 
 def codes(flags):

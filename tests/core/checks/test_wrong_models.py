@@ -13,9 +13,9 @@ import pytest
 from core.checks.joins import BROKEN_POINTS, WEAK_POINTS, check_joins, points_across, tracks_of
 from core.checks.matches import match_agreement
 from core.checks.model import check_model
+from core.checks.stats import model_stats
 from core.settings import make_settings
 from core.sparse.cases import Case, run_case
-from core.sparse.mapper import model_stats
 from tests.core.sparse.scene import make_scene, view_graph, write_graph
 
 N, CUT = 20, 10

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.dense.cameras import Pinhole, Pose
+from core.dense.cameras import Pinhole
 from core.dense.patchmatch.jit import kernel
 from core.dense.patchmatch.planes import from_normals, to_normals, uniform, upsample
 from core.dense.patchmatch.transfer import planes_from_source
+from core.geometry.pose import Pose
 
 
 def _plane_image(pinhole: Pinhole, normal: np.ndarray, distance: float) -> np.ndarray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.dense.cameras import Pose
 from core.dense.views import (
     SparseViews,
     angle_weight,
@@ -16,6 +15,7 @@ from core.dense.views import (
     select_views,
     write_views,
 )
+from core.geometry.pose import Pose
 from core.settings import make_settings
 
 

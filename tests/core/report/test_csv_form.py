@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.json_files import read_json
 from core.report.build import build_report, write_tables
 from core.report.csv_form import csv_line, escaped, read_csv, unescaped
-from core.report.tables import read_json
 from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import annotations, probe

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from core.json_files import write_json
 from core.report.load import load_tables
-from core.report.tables import write_json
 
 
 def test_reads_what_is_there(tmp_path: Path) -> None:

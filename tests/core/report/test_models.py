@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from core.json_files import write_json
 from core.report.load import load_tables, served_pieces
 from core.report.models import join_detections, join_lists
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
-from core.report.tables import write_json
 from core.timeline.events import EventRow
 from core.timeline.numbering import Start
 from tests.core.making_record import full_record

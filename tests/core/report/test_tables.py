@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from core.report.tables import write_csv, write_json
+from core.json_files import write_json
+from core.report.tables import write_csv
 
 
 def test_csv_is_rfc_4180(tmp_path: Path) -> None:

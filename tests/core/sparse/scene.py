@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.features.io import FrameFeatures
-from core.matching.outcome import MUTUAL_NEAREST, MatchedPair
+from core.matched_pair import MUTUAL_NEAREST, MatchedPair
 from core.settings import make_settings
 from core.verification import Verifier, camera_from_dict
 from core.viewgraph import PairTable, make_table, write_database, write_table

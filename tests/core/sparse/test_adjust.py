@@ -6,11 +6,12 @@ import numpy as np
 import pycolmap
 import pytest
 
+from core.checks.stats import model_stats
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust, adjustment_options
 from core.sparse.cases import Case, run_case
 from core.sparse.lens_trial import MIN_IMAGES, judge_principal_point, try_lens
-from core.sparse.mapper import mapper_options, model_stats, open_cache
+from core.sparse.mapper import mapper_options, open_cache
 from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)

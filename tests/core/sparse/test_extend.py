@@ -6,12 +6,12 @@ from pathlib import Path
 import pycolmap
 import pytest
 
+from core.checks.stats import ModelStats, model_stats
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
 from core.sparse.confirm import choose, confirmed_or_searched
 from core.sparse.extend import register_rest
-from core.sparse.mapper import ModelStats, model_stats
 from core.stage import StageTask
 from core.stages import confirm as confirm_stage
 from core.stages import extend as extend_stage

@@ -6,16 +6,9 @@ import numpy as np
 import pycolmap
 import pytest
 
+from core.checks.stats import model_stats
 from core.settings import make_settings
-from core.sparse.mapper import (
-    best_model,
-    map_images,
-    mapper_options,
-    model_stats,
-    open_cache,
-    registered_names,
-    restrict_model,
-)
+from core.sparse.mapper import best_model, map_images, mapper_options, open_cache, registered_names, restrict_model
 from tests.core.sparse.scene import make_scene, view_graph, write_graph
 
 THESIS = make_settings("thesis").mapper

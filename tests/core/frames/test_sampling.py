@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import BadInput
-from core.sampling import Interval, choose_frames, clip_interval, sample_uniformly
+from core.frames.sampling import Interval, choose_frames, clip_interval, sample_uniformly
 from core.settings import make_settings
 from core.video.table import FrameRow, FrameTable, VideoInfo
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from core.errors import StageFailed
+from core.frames.export import export_frames
+from core.frames.sampling import ChosenFrame
 from core.roi import Crop
-from core.sampling import ChosenFrame
 from core.video.decode import iter_frames
-from core.video.export import export_frames
 from core.video.probe import probe_video
 from tests.core.making_videos import every_ms, make_video
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import StageFailed
+from core.frames.sampling import ChosenFrame
 from core.roi import Crop
-from core.sampling import ChosenFrame
 from core.video.decode import VideoReader
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.table import FrameTable

@@ -1,0 +1,1 @@
+"""Which source frames take part, and the pictures written of them."""

@@ -1,0 +1,19 @@
+"""JSON files as results are kept in: UTF-8, finite numbers, keys in their given order."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write JSON in UTF-8, keys in their given order; ValueError for a number that is not finite."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def read_json(path: Path) -> Any:
+    """Read a JSON file in UTF-8."""
+    return json.loads(path.read_text(encoding="utf-8"))

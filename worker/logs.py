@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from core.task_key import file_stem
 from store.artifacts import ArtifactStore
 from store.records import Lease
 
@@ -50,7 +51,7 @@ class TaskLogs:
                 self.mirror.put(f"logs/{self._name(lease)}", path)
 
     def _name(self, lease: Lease) -> str:
-        name = f"{lease.key.replace('/', '__')}.log"
+        name = f"{file_stem(lease.key)}.log"
         return f"{lease.inspection_id}/{name}" if self.by_inspection else name
 
     @staticmethod

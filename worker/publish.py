@@ -14,7 +14,8 @@ from core.report.build import Report, build_report, write_tables
 from core.report.load import load_tables, served_pieces
 from core.report.record import RunRecord, RunState, TaskRecord, TaskState
 from core.settings import Settings
-from core.stage import Facts, key_of
+from core.stage import Facts
+from core.task_key import key_of
 from core.versions import all_versions
 from store.records import InspectionView, TaskView
 from worker.results import MANIFEST, ResultFolders

@@ -20,7 +20,7 @@ from core.errors import StageFailed
 from store.db import Database, open_sqlite
 from store.models import Attempt
 
-SEARCH = ("coarse/", "refine/")
+SEARCH = ("coarse", "refine")
 SEARCH_LIMIT_S = 900.0
 MANY_WINDOWS = {
     "camera.fov_deg": 85.0,

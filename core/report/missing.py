@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.flags import Flag
 from core.graph import STAGES
 from core.report.record import RunRecord, TaskRecord
-from core.stage import key_of, piece_of
+from core.task_key import key_of, piece_of
 
 _NAMES = tuple(STAGES)
 AFTER_MODEL = frozenset(_NAMES[_NAMES.index("extend") + 1 :])

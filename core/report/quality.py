@@ -14,7 +14,7 @@ from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
 from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
-from core.stage import key_of, piece_of
+from core.task_key import key_of, part_of, piece_of
 
 Row = Mapping[str, Any]
 Verdict = Literal["ok", "suspect", "refused"]
@@ -42,7 +42,7 @@ def collect_flags(record: RunRecord) -> list[Flag]:
 def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[Row]:
     """Of the cases, the checks of the chosen one speak for the run, and only where no final model was made of it."""
     is_case = task.stage in ("coarse", "refine")
-    if is_case and (record.facts("extend") or task.key.split("/", 1)[1] != selected_case(record)):
+    if is_case and (record.facts("extend") or part_of(task.key) != selected_case(record)):
         return ()
     checks: Sequence[Row] = task.facts.get("checks", ())
     return checks
@@ -178,7 +178,7 @@ def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
     ranked = record.facts("reduce_refine").get("ranking", ())
     verified = {row["name"]: row.get("verified_detections") for row in ranked}
     winner = next((row["name"] for row in cases if row["selected"]), None)
-    checks = {task.key.split("/", 1)[1]: task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
+    checks = {part_of(task.key): task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
     order = sorted(
         (row for row in cases if not row["selected"]),
         key=lambda row: (

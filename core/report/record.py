@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from core.settings import Settings
-from core.stage import Facts, stage_of
+from core.stage import Facts
+from core.task_key import stage_of
 
 RunState = Literal["succeeded", "partial", "failed", "cancelled", "interrupted"]
 TaskState = Literal["succeeded", "failed", "skipped", "cancelled", "waiting"]

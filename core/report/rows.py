@@ -6,6 +6,7 @@ from typing import Any
 
 from core.mapping.rows import Detection, rows_without_model
 from core.report.record import RunRecord, TaskRecord
+from core.task_key import part_of
 
 Row = dict[str, Any]
 
@@ -60,7 +61,7 @@ def case_rows(record: RunRecord) -> list[Row]:
 
 
 def _case_row(task: TaskRecord, chosen: str) -> Row:
-    kind, name = task.key.split("/", 1)
+    kind, name = task.stage, part_of(task.key)
     start, end = (int(part) for part in name.split("_")[-2:])
     row: Row = dict.fromkeys(CASE_COLUMNS)
     row.update({"name": name, "kind": kind, "start": start, "end": end, "frames": end - start})

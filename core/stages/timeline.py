@@ -12,10 +12,11 @@ from core.mapping.coloring import blend
 from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
 from core.report.tables import read_json, write_json
-from core.stage import StageResult, StageTask, key_of
+from core.stage import StageResult, StageTask
 from core.stages.map_defects import open_scene_of, world_comments
 from core.surface.glb import vertex_normals, write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
+from core.task_key import key_of
 from core.timeline.clusters import Cluster, cluster_detections, cluster_radius
 from core.timeline.events import defect_of_detection, defect_records, event_rows, with_defect_ids
 from core.timeline.numbering import Start

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from core.task_key import stage_of
 from store.graph import Graph
 from store.models import OVER_TASK
 from store.progress import StageCount, plan_share, stage_weights
@@ -49,7 +50,7 @@ class Tracker:
 
     def event(self, kind: EventKind, key: str = "", message: str = "", state: str = "") -> Event:
         """An event of this moment; its fraction never falls."""
-        stage = key.split("/", 1)[0]
+        stage = stage_of(key)
         counts = self._counts()
         own = counts.get(stage, StageCount(0, 0))
         self._fraction = max(self._fraction, plan_share(self._graph, counts))

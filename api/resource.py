@@ -15,9 +15,10 @@ from api.services import Services
 from api.watching import Snapshot
 from core.errors import BadInput, NoReconstruction, error_from_dict
 from core.fingerprint import digest_of
+from core.states import InspectionState
 from core.versions import all_versions
 from store.artifact_rows import ArtifactRows
-from store.models import Inspection
+from store.models import LEASABLE, Inspection
 from store.status import PUBLISH, InspectionStatus, StageStatus, Statuses
 from store.timings import Timings, learn_timings, plan_eta, stage_eta
 
@@ -90,7 +91,7 @@ class Resources:
                 "eta_s": left,
                 "stages": [self.stage(stage, timings) for stage in status.stages],
                 "queue": _queue(status, left),
-                "cancellable": row.state in ("queued", "running"),
+                "cancellable": row.state in LEASABLE,
                 "label": row.label,
                 "external_id": row.external_id,
                 "parameters": row.parameters or {},
@@ -123,7 +124,7 @@ class Resources:
         )
 
     def _eta(self, status: InspectionStatus, timings: Timings) -> Interval | None:
-        if not status.active or status.state == "cancelling" or status.stage == PUBLISH:
+        if not status.active or status.state == InspectionState.CANCELLING or status.stage == PUBLISH:
             return None
         return plan_eta(status.stages, self.services.graph, timings, self.services.settings.worker_count())
 

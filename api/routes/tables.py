@@ -19,7 +19,7 @@ from api.parameters import Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
 from store.artifact_rows import ArtifactRows
-from store.models import Inspection
+from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state
 from store.tables import (
     CASES,
@@ -206,7 +206,7 @@ def quality(
 
 def not_ready(row: Inspection, what: str) -> Refused:
     """409 while it may still come, 404 once it will not."""
-    if shown_state(row) in ("queued", "running", "cancelling"):
+    if shown_state(row) in ACTIVE_INSPECTION:
         headers = {"Retry-After": "5"}
         detail = f"the {what} is there when the inspection is over"
         return Refused(HTTPStatus.CONFLICT, "not_ready", detail, headers=headers, retryable=True)

@@ -17,6 +17,7 @@ from sqlalchemy import select
 from bench.service.deployment import Server, curl, serving
 from bench.speed.timing import Row, Table
 from core.errors import StageFailed
+from core.states import AttemptOutcome, InspectionState
 from core.task_key import stage_of
 from store.db import Database, open_sqlite
 from store.models import ACTIVE_INSPECTION as ACTIVE
@@ -58,7 +59,7 @@ def covered(intervals: Iterable[Interval]) -> float:
 def attempts(database: Database, stages: tuple[str, ...] = ()) -> list[Interval]:
     """When stages (empty = all) were running: not the start of their processes, not what is done with their files."""
     with database.read() as session:
-        rows = session.scalars(select(Attempt).where(Attempt.outcome == "succeeded")).all()
+        rows = session.scalars(select(Attempt).where(Attempt.outcome == AttemptOutcome.SUCCEEDED)).all()
     return [
         (row.ended_at - timedelta(seconds=row.seconds), row.ended_at)
         for row in rows
@@ -87,7 +88,7 @@ def _finished(
         while (found := httpx.get(link, params={"wait": 30}, timeout=60).raise_for_status().json())["state"] in ACTIVE:
             pass
         wall = time.perf_counter() - began
-        if found["state"] != "succeeded":
+        if found["state"] != InspectionState.SUCCEEDED:
             raise StageFailed(f"the sample ended {found['state']}: {found['error']}", where="service")
         database = open_sqlite(data / "bladeatlas.db")
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from core.flags import Flag
 from core.graph import STAGES
 from core.report.record import RunRecord, TaskRecord
+from core.states import RunState, TaskState
 from core.task_key import key_of, piece_of
 
 _NAMES = tuple(STAGES)
@@ -20,7 +21,7 @@ def missing_parts(record: RunRecord) -> list[Flag]:
     if record.reason == "no_reconstruction" or not record.facts("extend"):
         return []
     flags = [_failed(task) for task in record.tasks if _failed_after_model(record, task)]
-    if record.state != "succeeded" and not flags:
+    if record.state != RunState.SUCCEEDED and not flags:
         where = ": ".join(filter(None, (record.failed_stage, record.reason or record.state)))
         flags.append(Flag("incomplete", "warning", where=where))
     if not record.facts("mesh").get("n_faces"):
@@ -30,7 +31,7 @@ def missing_parts(record: RunRecord) -> list[Flag]:
 
 def _failed_after_model(record: RunRecord, task: TaskRecord) -> bool:
     """A further model that never came to be is no loss; one that lost its surface is."""
-    after = task.state == "failed" and task.stage in AFTER_MODEL
+    after = task.state == TaskState.FAILED and task.stage in AFTER_MODEL
     return after and bool(record.facts(key_of("extend", piece_of(task.key))))
 
 

@@ -10,6 +10,7 @@ from core.graph import STAGES
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
+from core.states import StageState, TaskState
 
 Row = Mapping[str, Any]
 
@@ -81,18 +82,18 @@ def _stages(tasks: Sequence[TaskRecord]) -> list[dict[str, Any]]:
     return rows
 
 
-def stage_state(states: Sequence[str]) -> str:
+def stage_state(states: Sequence[TaskState]) -> StageState:
     """State of a stage from those of its tasks.
 
     A stage that fans out succeeds with any succeeded task once all have ended; without tasks it is waiting.
     """
-    if not states or "waiting" in states:
-        return "waiting"
-    if "cancelled" in states:
-        return "cancelled"
-    if "succeeded" in states:
-        return "succeeded"
-    return "failed" if "failed" in states else "skipped"
+    if not states or TaskState.WAITING in states:
+        return StageState.WAITING
+    if TaskState.CANCELLED in states:
+        return StageState.CANCELLED
+    if TaskState.SUCCEEDED in states:
+        return StageState.SUCCEEDED
+    return StageState.FAILED if TaskState.FAILED in states else StageState.SKIPPED
 
 
 def _headline(

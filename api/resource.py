@@ -15,6 +15,7 @@ from api.services import Services
 from api.watching import Snapshot
 from core.errors import BadInput, NoReconstruction, error_from_dict
 from core.fingerprint import digest_of
+from core.flags import Severity
 from core.states import InspectionState
 from core.versions import all_versions
 from store.artifact_rows import ArtifactRows
@@ -24,7 +25,7 @@ from store.timings import Timings, learn_timings, plan_eta, stage_eta
 
 _LEARN_EVERY_S = 60.0
 _REMEMBERED = 512
-_SHOWN_SEVERITIES = ("warning", "error")
+_SHOWN_SEVERITIES = (Severity.WARNING, Severity.ERROR)
 _TITLES = {
     "bad_input": "The input cannot be used",
     "no_reconstruction": "The video gave no model that can be trusted",

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from core.flags import Verdict
 from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case
 from core.report.build import Report, build_report, write_tables
 from core.report.load import load_tables, served_pieces
@@ -113,7 +114,7 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
     """Everything that a run publishes; its tables lie below the folder `scratch` as long as the block lasts."""
     report = build_report(record)
     facts = {task.key: task.facts for task in record.tasks if task.state == TaskState.SUCCEEDED}
-    files = dict(_files(folders, facts, trusted=report.verdict != "refused"))
+    files = dict(_files(folders, facts, trusted=report.verdict != Verdict.REFUSED))
     scratch.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="tables-", dir=scratch) as folder:
         write_tables(report, Path(folder))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.fingerprint import digest_of
+from core.flags import Verdict
 from core.graph import STAGES
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
@@ -16,7 +17,7 @@ Row = Mapping[str, Any]
 
 
 def build_summary(
-    record: RunRecord, verdict: str, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
+    record: RunRecord, verdict: Verdict, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
 ) -> dict[str, Any]:
     """The object of summary.json."""
     parameters = record.settings.model_dump(mode="json")

@@ -8,7 +8,7 @@ import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writin
 import pycolmap
 
 from core.checks.model import check_model
-from core.flags import Flag, worst
+from core.flags import Flag, Severity, worst
 from core.sparse.cases import Case, CaseResult, run_case
 from core.stage import StageResult, StageTask
 from core.task_key import key_of
@@ -56,7 +56,7 @@ def case_checks(result: CaseResult, case: Case) -> list[Flag]:
 
 def trust_facts(flags: list[Flag]) -> dict[str, Any]:
     """Facts `checks` and `vetoed`: a finding of severity `error` vetoes a case."""
-    return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == "error")}
+    return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == Severity.ERROR)}
 
 
 def _row(task: StageTask, kind: str, result: CaseResult) -> dict[str, Any]:

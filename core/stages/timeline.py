@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from core.flags import Severity
 from core.mapping.coloring import blend
 from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
@@ -74,7 +75,7 @@ def _by_surface(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
 def _doubts(task: StageTask) -> int:
     """Warnings of the checks about the model that the places lie on."""
     checks = task.facts.get(key_of("extend", task.piece), {}).get("checks", ())
-    return len({check["code"] for check in checks if check["severity"] != "info"})
+    return len({check["code"] for check in checks if check["severity"] != Severity.INFO})
 
 
 def _by_clusters(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bench.accuracy.align import Sim3
 from bench.accuracy.truth import TrueBox, Truth
+from core.mapping.rows import Outcome
 
 F64 = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ class Placement:
     @property
     def mapped(self) -> bool:
         """Placed with full trust, by the row's own word."""
-        return self.outcome == "mapped"
+        return self.outcome == Outcome.MAPPED
 
     @property
     def right(self) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.mapping.confidence import Parts
-from core.mapping.rows import DetectionRow
+from core.mapping.rows import DetectionRow, Outcome
 from core.mapping.surface_rules import Observation
 from core.report.tables import read_json, write_json
 
@@ -88,5 +88,5 @@ def parts_rows(observations: Sequence[Observation]) -> list[dict[str, Any]]:
             "parts": None if one.parts is None else one.parts.to_dict(),
         }
         for one in observations
-        if one.row.outcome != "unplaced"
+        if one.row.outcome != Outcome.UNPLACED
     ]

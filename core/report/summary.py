@@ -8,6 +8,7 @@ from typing import Any
 from core.fingerprint import digest_of
 from core.flags import Verdict
 from core.graph import STAGES
+from core.mapping.rows import Outcome
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
@@ -112,7 +113,7 @@ def _headline(
         "mesh_vertices": mesh.get("n_vertices"),
         "mesh_faces": mesh.get("n_faces"),
         "detections": len(detections),
-        "mapped": sum(row["outcome"] == "mapped" for row in detections),
+        "mapped": sum(row["outcome"] == Outcome.MAPPED for row in detections),
         "events": len(timeline),
         "defects": len(defects),
     }

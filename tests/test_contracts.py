@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from core.flags import Severity, Verdict
+from core.mapping.rows import Outcome
 from core.states import AttemptOutcome, InspectionState, RunState, StageState, TaskState, run_state
 
 ROOT = Path(__file__).parents[1]
@@ -21,9 +22,11 @@ STATES = {member.value for kind in (InspectionState, RunState, StageState, TaskS
 DECLARED = {
     "state": STATES,
     "severity": {member.value for member in Severity},
+    "outcome": {member.value for kind in (Outcome, AttemptOutcome) for member in kind},
     "verdict": {member.value for member in Verdict},
 }
 """Values by the name of the attribute or key that holds them."""
+KINDS = (InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict)
 KEY_MODULE = "core/task_key.py"
 
 
@@ -103,7 +106,9 @@ def test_the_rules_find_what_they_are_for(rule: object, text: str) -> None:
     assert list(rule(ast.parse(text)))
 
 
-@pytest.mark.parametrize("kind", [InspectionState, TaskState, StageState, AttemptOutcome, RunState, Severity, Verdict])
+@pytest.mark.parametrize(
+    "kind", [InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict]
+)
 def test_a_member_is_written_as_its_value(kind: type[StrEnum]) -> None:
     for member in kind:
         plain = member.value

@@ -15,15 +15,17 @@ from api.services import Services
 from api.watching import Snapshot
 from core.errors import BadInput, NoReconstruction, error_from_dict
 from core.fingerprint import digest_of
+from core.flags import Severity
+from core.states import InspectionState
 from core.versions import all_versions
 from store.artifact_rows import ArtifactRows
-from store.models import Inspection
+from store.models import LEASABLE, Inspection
 from store.status import PUBLISH, InspectionStatus, StageStatus, Statuses
 from store.timings import Timings, learn_timings, plan_eta, stage_eta
 
 _LEARN_EVERY_S = 60.0
 _REMEMBERED = 512
-_SHOWN_SEVERITIES = ("warning", "error")
+_SHOWN_SEVERITIES = (Severity.WARNING, Severity.ERROR)
 _TITLES = {
     "bad_input": "The input cannot be used",
     "no_reconstruction": "The video gave no model that can be trusted",
@@ -90,7 +92,7 @@ class Resources:
                 "eta_s": left,
                 "stages": [self.stage(stage, timings) for stage in status.stages],
                 "queue": _queue(status, left),
-                "cancellable": row.state in ("queued", "running"),
+                "cancellable": row.state in LEASABLE,
                 "label": row.label,
                 "external_id": row.external_id,
                 "parameters": row.parameters or {},
@@ -123,7 +125,7 @@ class Resources:
         )
 
     def _eta(self, status: InspectionStatus, timings: Timings) -> Interval | None:
-        if not status.active or status.state == "cancelling" or status.stage == PUBLISH:
+        if not status.active or status.state == InspectionState.CANCELLING or status.stage == PUBLISH:
             return None
         return plan_eta(status.stages, self.services.graph, timings, self.services.settings.worker_count())
 

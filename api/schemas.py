@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from api.enumerations import OneOf
 from api.parameters import Text
 from core.settings import PRESET_NAMES
+from core.states import InspectionState, StageState
 
 Interval = tuple[float, float]
-State = Literal["queued", "running", "cancelling", "cancelled", "succeeded", "partial", "failed"]
+State = Annotated[str, OneOf(InspectionState)]
 
 EXAMPLE_ID = "0b6f1e0c3f7d4f0f9a52f7f4f1f0a6c1"
 _SHA = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
 
 EXAMPLE_STAGE: dict[str, Any] = {
     "name": "coarse",
-    "state": "running",
+    "state": StageState.RUNNING,
     "done": 3,
     "total": 7,
     "progress": 0.47,
@@ -27,7 +29,7 @@ EXAMPLE_STAGE: dict[str, Any] = {
 }
 EXAMPLE: dict[str, Any] = {
     "id": EXAMPLE_ID,
-    "state": "running",
+    "state": InspectionState.RUNNING,
     "stage": "coarse",
     "attempt": 1,
     "progress": 0.515,
@@ -58,7 +60,7 @@ class StageItem(BaseModel):
     model_config = ConfigDict(json_schema_extra={"example": EXAMPLE_STAGE})
 
     name: str
-    state: Literal["waiting", "running", "succeeded", "failed", "skipped", "cancelled"]
+    state: Annotated[str, OneOf(StageState)]
     done: int = Field(description="tasks that ended")
     total: int = Field(description="tasks known so far")
     progress: float = Field(ge=0, le=1, description="share of this stage, running tasks included")

@@ -15,6 +15,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from cli.terminal import console, say_json, visible
+from core.states import TaskState
 from worker.outcome import Event
 
 PLAIN_INTERVAL_S = 15.0
@@ -131,11 +132,11 @@ class _Stages:
 
     def _parts(self, stage: str, total: int) -> list[str]:
         ended = self._ended[stage]
-        if set(ended) == {"skipped"}:
-            return ["skipped"]
+        if set(ended) == {TaskState.SKIPPED}:
+            return [TaskState.SKIPPED]
         parts = [f"{total} tasks"] if total > 1 else []
         parts.append("already there" if set(ended) == {"reused"} else duration(self._seconds[stage]))
-        if lost := ended["failed"]:
+        if lost := ended[TaskState.FAILED]:
             parts.append(f"{lost} without a result")
         return parts
 

@@ -17,6 +17,7 @@ from cli.client import Client, InspectionInfo
 from cli.progress import duration
 from cli.terminal import console, say, say_json, visible
 from core.errors import BadInput
+from core.states import InspectionState
 
 DEFAULT_SERVER = "http://127.0.0.1:8000"
 SERVER_VARIABLE = "BLADEATLAS_SERVER"
@@ -43,7 +44,11 @@ def _key(parsed: argparse.Namespace) -> str | None:
 
 def exit_code(inspection: InspectionInfo) -> int:
     """The exit code of the contract for an inspection that is over."""
-    by_state = {"succeeded": exits.DONE, "partial": exits.PARTIAL, "cancelled": exits.INTERRUPTED}
+    by_state: dict[str, int] = {
+        InspectionState.SUCCEEDED: exits.DONE,
+        InspectionState.PARTIAL: exits.PARTIAL,
+        InspectionState.CANCELLED: exits.INTERRUPTED,
+    }
     if inspection.state in by_state:
         return by_state[inspection.state]
     code = (inspection.error or {}).get("code")

@@ -10,6 +10,7 @@ from cli.terminal import say
 from core.errors import BadInput
 from core.graph import STAGES
 from core.intake import check_input
+from core.states import RunState
 from worker.outcome import Outcome
 from worker.run import Names, run_inspection
 
@@ -40,7 +41,7 @@ def command(parsed: argparse.Namespace) -> int:
     if isinstance(display, progress.JsonDisplay):
         labels = {"label": wanted.label, "external_id": wanted.external_id}
         display.line({"event": "result", "exit_code": code, **labels, **_record(outcome)})
-    elif outcome.state in ("succeeded", "partial", "failed"):
+    elif outcome.state in (RunState.SUCCEEDED, RunState.PARTIAL, RunState.FAILED):
         say(*report.lines(outcome))
     if code == exits.INTERRUPTED:
         say("bladeatlas: interrupted; the same command goes on where it stopped", error=True)
@@ -50,11 +51,11 @@ def command(parsed: argparse.Namespace) -> int:
 
 
 def _code(outcome: Outcome) -> int:
-    if outcome.state == "succeeded":
+    if outcome.state == RunState.SUCCEEDED:
         return exits.DONE
-    if outcome.state == "partial":
+    if outcome.state == RunState.PARTIAL:
         return exits.PARTIAL
-    if outcome.state in ("interrupted", "cancelled"):
+    if outcome.state in (RunState.INTERRUPTED, RunState.CANCELLED):
         return exits.INTERRUPTED
     return exits.exit_code(outcome.error) if outcome.error else exits.INTERNAL
 

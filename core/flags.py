@@ -7,12 +7,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from enum import StrEnum
+from typing import Any
 
 from core.errors import StageFailed
 
-Severity = Literal["info", "warning", "error"]
-SEVERITIES: tuple[Severity, ...] = ("info", "warning", "error")
+
+class Severity(StrEnum):
+    """How much a finding matters, the mildest first."""
+
+    INFO = "info"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+class Verdict(StrEnum):
+    """What the findings on a result mean for it."""
+
+    OK = "ok"
+    SUSPECT = "suspect"
+    REFUSED = "refused"
+    """There is no model that can be trusted."""
+
+
+SEVERITIES: tuple[Severity, ...] = tuple(Severity)
 
 FLAG_CODES: Mapping[str, str] = {
     "interval_clipped": "the preset's interval reached beyond the video and was cut to it",
@@ -82,7 +100,16 @@ class Flag:
     @classmethod
     def from_dict(cls, row: Mapping[str, Any]) -> Flag:
         """Rebuild from `to_dict`; unknown codes and severities raise `StageFailed`."""
-        return cls(row["code"], row["severity"], row.get("value"), row.get("threshold"), row.get("where", ""))
+        return cls(
+            row["code"], _severity(row["severity"]), row.get("value"), row.get("threshold"), row.get("where", "")
+        )
+
+
+def _severity(value: str) -> Severity:
+    try:
+        return Severity(value)
+    except ValueError:
+        raise StageFailed(f"unknown severity {value}", where="flags") from None
 
 
 def worst(flags: list[Flag]) -> Severity | None:
@@ -92,4 +119,4 @@ def worst(flags: list[Flag]) -> Severity | None:
 
 def error_codes(checks: Iterable[Mapping[str, Any]]) -> str:
     """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is vetoed."""
-    return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == "error"}))
+    return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == Severity.ERROR}))

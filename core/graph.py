@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from core.settings import Settings
-from core.stage import Facts, key_of, stage_of
+from core.stage import Facts
+from core.task_key import chunk_key, key_of, stage_of
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
 
@@ -160,20 +161,20 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     chunks = [(start, min(start + step, n_frames)) for start in range(0, n_frames, step)]
     # Other annotations of the same video need no new features, unless these keep to the annotated blades.
     needs = ("frames", "annotations") if settings.features.blade_masks_only else ("frames",)
-    features = [TaskSpec(f"features/{i:03d}", needs, {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
+    features = [TaskSpec(chunk_key("features", i), needs, {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
     feature_keys = tuple(task.key for task in features)
     tasks = list(features)
     focal_keys: tuple[str, ...] = ()
     if settings.camera.fov_deg is None and settings.camera.focal == "estimate":
         focal = [
-            TaskSpec(f"focal/{fov:05.1f}", ("frames", *feature_keys), {"fov_deg": fov}, optional=True)
+            TaskSpec(key_of("focal", part=f"{fov:05.1f}"), ("frames", *feature_keys), {"fov_deg": fov}, optional=True)
             for fov in settings.camera.fov_starts_deg
         ]
         tasks += focal
         focal_keys = tuple(task.key for task in focal)
     tasks.append(TaskSpec("camera", ("frames", *focal_keys)))
     matches = [
-        TaskSpec(f"matches/{i:03d}", ("frames", "camera", *feature_keys), {"start": a, "end": b})
+        TaskSpec(chunk_key("matches", i), ("frames", "camera", *feature_keys), {"start": a, "end": b})
         for i, (a, b) in enumerate(chunks)
     ]
     tasks += matches
@@ -191,7 +192,7 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     best = facts["reduce_coarse"]
     refined = refined_windows((int(best["start"]), int(best["end"])), n_search, settings.windows, str(best["best"]))
     tasks = [_case(window, ("graph", "reduce_coarse")) for window in refined]
-    coarse_key = f"coarse/{best['best']}"
+    coarse_key = key_of("coarse", part=str(best["best"]))
     refine_keys = tuple(_case_key(window) for window in refined)
     tasks.append(TaskSpec("reduce_refine", ("annotations", "frames", "reduce_coarse", coarse_key, *refine_keys)))
     tasks.append(TaskSpec("confirm", ("frames", "graph", "reduce_refine")))
@@ -208,10 +209,10 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts]) -> list[T
     step, n_views = settings.compute.chunk_views, int(facts["undistort"]["n_views"])
     chunks = [(start, min(start + step, n_views)) for start in range(0, n_views, step)]
     tasks: list[TaskSpec] = []
-    depth = [TaskSpec(f"depth/{i:03d}", ("undistort",), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
+    depth = [TaskSpec(chunk_key("depth", i), ("undistort",), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
     depth_keys = tuple(task.key for task in depth)
     geometric = [
-        TaskSpec(f"geometric/{i:03d}", ("undistort", *depth_keys), {"start": a, "end": b})
+        TaskSpec(chunk_key("geometric", i), ("undistort", *depth_keys), {"start": a, "end": b})
         for i, (a, b) in enumerate(chunks)
     ]
     tasks += [*depth, *geometric]
@@ -237,7 +238,7 @@ def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
     def key(stage: str) -> str:
         return key_of(stage, piece)
 
-    depth, geometric = f"{key('depth')}/000", f"{key('geometric')}/000"
+    depth, geometric = chunk_key("depth", 0, piece), chunk_key("geometric", 0, piece)
     whole = {"piece": piece, "start": 0, "end": ALL_VIEWS}
     one = {"piece": piece}
     surface = (key("extend"), key("fuse"), key("mesh"))
@@ -261,7 +262,7 @@ def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
 
 
 def _case_key(window: Window) -> str:
-    return f"{window.kind}/{window.name}"
+    return key_of(window.kind, part=window.name)
 
 
 def _case(window: Window, depends: tuple[str, ...]) -> TaskSpec:
@@ -273,7 +274,7 @@ def _case(window: Window, depends: tuple[str, ...]) -> TaskSpec:
         "warm_from": window.warm_from,
     }
     if window.warm_from:
-        depends = (*depends, f"coarse/{window.warm_from}")
+        depends = (*depends, key_of("coarse", part=window.warm_from))
     return TaskSpec(_case_key(window), depends, args, optional=True)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.stage import Facts
+from core.task_key import key_of
 
 BEST_CASE = "{best}"
 """Stands for the task of the case that the search chose."""
@@ -69,5 +70,5 @@ def best_case(facts: Mapping[str, Facts]) -> str:
     for reducer in ("reduce_refine", "reduce_coarse"):
         found = facts.get(reducer, {})
         if found.get("best"):
-            return f"{found.get('kind', 'coarse')}/{found['best']}"
+            return key_of(str(found.get("kind", "coarse")), part=str(found["best"]))
     return ""

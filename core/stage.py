@@ -14,26 +14,10 @@ from typing import Any
 
 from core.errors import Cancelled, StageFailed
 from core.settings import Settings
+from core.task_key import key_of, parts_of
 from core.video.limits import MAX_FRAME_PIXELS
 
 Facts = dict[str, Any]
-PIECE_MARK = "@"
-"""Between a task's key and the number of the further model that it works on: ``mesh@1``, ``depth@1/000``."""
-
-
-def key_of(stage: str, piece: int) -> str:
-    """Key of a stage's one task for a model; 0 is the run's own."""
-    return f"{stage}{PIECE_MARK}{piece}" if piece else stage
-
-
-def piece_of(key: str) -> int:
-    """Number of the model that a task works on, by its key."""
-    return int(key.split("/", 1)[0].partition(PIECE_MARK)[2] or 0)
-
-
-def stage_of(key: str) -> str:
-    """Name of the stage of a task."""
-    return key.split("/", 1)[0].split(PIECE_MARK, 1)[0]
 
 
 def _no_progress(fraction: float, message: str) -> None:
@@ -89,8 +73,7 @@ class StageTask:
 
     def fan_in(self, stage: str) -> list[tuple[str, Path]]:
         """(key, folder) of every finished task of a fanned-out stage, ordered by key."""
-        prefix = key_of(stage, self.piece) + "/"
-        return sorted((key, path) for key, path in self.inputs.items() if key.startswith(prefix))
+        return [(key, self.inputs[key]) for key in parts_of(self.inputs, stage, self.piece)]
 
 
 @dataclass(frozen=True)

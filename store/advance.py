@@ -18,14 +18,15 @@ from core.errors import error_from_dict
 from core.graph import TaskSpec
 from core.settings import Settings
 from core.stage import Facts
+from core.states import InspectionState, TaskState
 from store.graph import Graph
-from store.models import OVER_TASK, Inspection, Result, Task
+from store.models import LEASABLE, OVER_TASK, Inspection, Result, Task
 from store.rows import write_rows
 
 
 def advance(session: Session, graph: Graph, inspection: Inspection, now: datetime) -> None:
     """Bring the plan of a locked inspection up to date; ends the inspection when nothing is left."""
-    if inspection.state not in ("queued", "running"):
+    if inspection.state not in LEASABLE:
         return
     settings = Settings.model_validate(inspection.settings)
     tasks = {task.key: task for task in _tasks(session, inspection.id)}
@@ -50,7 +51,7 @@ def _step(
 ) -> bool:
     """One pass over the plan; True when a reused result may have opened more of it."""
     known: dict[str, Facts] = {
-        key: task.facts for key, task in tasks.items() if task.state == "succeeded" and task.facts is not None
+        key: task.facts for key, task in tasks.items() if task.state == TaskState.SUCCEEDED and task.facts is not None
     }
     plan = graph.expand(settings, known)
     for position, spec in enumerate(plan):
@@ -58,14 +59,14 @@ def _step(
             tasks[spec.key].position = position
         else:
             tasks[spec.key] = _new_task(session, graph, inspection.id, spec, position)
-    broken = any(task.state == "failed" and not _tolerated(task) for task in tasks.values())
+    broken = any(task.state == TaskState.FAILED and not _tolerated(task) for task in tasks.values())
     reused = False
     for spec in plan:
         task = tasks[spec.key]
         if broken:
-            if task.state in ("waiting", "runnable"):
-                task.state, task.ended_at = "skipped", now
-        elif task.state == "waiting":
+            if task.state in (TaskState.WAITING, TaskState.RUNNABLE):
+                task.state, task.ended_at = TaskState.SKIPPED, now
+        elif task.state == TaskState.WAITING:
             reused |= _settle(session, graph, inspection, settings, spec, tasks, now)
     return reused and not broken
 
@@ -80,7 +81,7 @@ def _new_task(session: Session, graph: Graph, inspection_id: str, spec: TaskSpec
         args=dict(spec.args),
         depends=list(spec.depends),
         optional=spec.optional,
-        state="waiting",
+        state=TaskState.WAITING,
         attempt=0,
         fence=0,
         progress=0.0,
@@ -110,17 +111,17 @@ def _settle(
     if any(task.state not in OVER_TASK for task in depends):
         return False
     task = tasks[spec.key]
-    if any(dep.state != "succeeded" and not dep.optional for dep in depends):
-        task.state, task.ended_at = "skipped", now
+    if any(dep.state != TaskState.SUCCEEDED and not dep.optional for dep in depends):
+        task.state, task.ended_at = TaskState.SKIPPED, now
         return False
-    digests = {dep.key: dep.digest for dep in depends if dep.state == "succeeded" and dep.digest is not None}
+    digests = {dep.key: dep.digest for dep in depends if dep.state == TaskState.SUCCEEDED and dep.digest is not None}
     task.fingerprint = graph.fingerprint(
         spec, settings, digests, inspection.video_sha256, inspection.annotations_sha256
     )
     # Held until the commit: who cleans up waits, and then sees that this task uses it.
     result = session.get(Result, task.fingerprint, with_for_update={"read": True})
     if result is None:
-        task.state = "runnable"
+        task.state = TaskState.RUNNABLE
         return False
     session.flush()
     accept(session, task, result, now, reused=True)
@@ -129,7 +130,7 @@ def _settle(
 
 def accept(session: Session, task: Task, result: Result, now: datetime, *, reused: bool) -> None:
     """Write a result into its task, with the rows that belong to it."""
-    task.state, task.reused, task.progress = "succeeded", reused, 1.0
+    task.state, task.reused, task.progress = TaskState.SUCCEEDED, reused, 1.0
     task.facts, task.digest, task.error = result.facts, result.digest, None
     task.seconds, task.peak_rss_bytes = result.seconds, result.peak_rss_bytes
     task.lease_owner, task.lease_expires_at, task.ended_at = None, None, now
@@ -143,14 +144,14 @@ def _finish(graph: Graph, inspection: Inspection, tasks: list[Task], now: dateti
     """End the inspection once every task has ended."""
     if any(task.state not in OVER_TASK for task in tasks):
         return
-    failed = sorted((t for t in tasks if t.state == "failed" and not _tolerated(t)), key=lambda t: t.position)
+    failed = sorted((t for t in tasks if t.state == TaskState.FAILED and not _tolerated(t)), key=lambda t: t.position)
     inspection.ended_at = now
     if not failed:
-        inspection.state, inspection.error, inspection.failed_stage = "succeeded", None, None
+        inspection.state, inspection.error, inspection.failed_stage = InspectionState.SUCCEEDED, None, None
         return
     first = failed[0]
     error: dict[str, Any] = dict(first.error or {})
     inspection.error, inspection.failed_stage = error, first.stage
     outcome = error_from_dict(error).code == "no_reconstruction"
-    served = any(task.stage in graph.serves_from and task.state == "succeeded" for task in tasks)
-    inspection.state = "partial" if served and not outcome else "failed"
+    served = any(task.stage in graph.serves_from and task.state == TaskState.SUCCEEDED for task in tasks)
+    inspection.state = InspectionState.PARTIAL if served and not outcome else InspectionState.FAILED

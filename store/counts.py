@@ -8,6 +8,7 @@ from datetime import datetime, timedelta
 
 from sqlalchemy import func, select
 
+from core.states import InspectionState, TaskState
 from store.db import Database
 from store.models import ACTIVE_INSPECTION, Attempt, Inspection, Task, Upload, Worker
 
@@ -51,12 +52,14 @@ def count_all(db: Database) -> Counts:
         open_tasks = (
             select(Task.queue, Task.state, func.count())
             .join(Inspection, Inspection.id == Task.inspection_id)
-            .where(Inspection.state.in_(ACTIVE_INSPECTION), Task.state.in_(("runnable", "leased")))
+            .where(Inspection.state.in_(ACTIVE_INSPECTION), Task.state.in_((TaskState.RUNNABLE, TaskState.LEASED)))
             .group_by(Task.queue, Task.state)
         )
         outcomes = select(Attempt.outcome, func.count()).group_by(Attempt.outcome)
         unfinished = select(func.count()).where(Upload.removed_at.is_(None), Upload.offset < Upload.length)
-        oldest = session.scalar(select(func.min(Inspection.created_at)).where(Inspection.state == "queued"))
+        oldest = session.scalar(
+            select(func.min(Inspection.created_at)).where(Inspection.state == InspectionState.QUEUED)
+        )
         workers = session.scalars(select(Worker).where(Worker.seen_at > now - SEEN_WITHIN).order_by(Worker.name))
         return Counts(
             inspections={state: n for state, n in session.execute(by_state.group_by(Inspection.state))},  # noqa: C416

@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 from core.errors import BadInput
 from core.fingerprint import digest_of
 from core.settings import Settings
+from core.states import InspectionState, TaskState
 from store.advance import advance
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
@@ -46,7 +47,7 @@ class Inspections:
         now = self.db.now(session)
         inspection = Inspection(
             id=inspection_id,
-            state="queued",
+            state=InspectionState.QUEUED,
             video_path=files.video,
             video_sha256=files.video_sha256,
             annotations_path=files.annotations,
@@ -90,7 +91,9 @@ class Inspections:
                 admit(session)
             inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
             tasks = session.scalars(select(Task).where(Task.inspection_id == inspection_id)).all()
-            if any(task.state == "leased" for task in tasks) or (ended_only and inspection.state in ACTIVE_INSPECTION):
+            if any(task.state == TaskState.LEASED for task in tasks) or (
+                ended_only and inspection.state in ACTIVE_INSPECTION
+            ):
                 raise BadInput("the inspection is still being worked on", code="conflict", where=inspection_id)
             if chosen != inspection.settings or input_digest(files) != inspection.input_digest:
                 inspection.previous = sorted({task.fingerprint for task in tasks if task.fingerprint})
@@ -101,7 +104,7 @@ class Inspections:
             inspection.video_path, inspection.video_sha256 = files.video, files.video_sha256
             inspection.annotations_path, inspection.annotations_sha256 = files.annotations, files.annotations_sha256
             inspection.input_digest, inspection.settings = input_digest(files), chosen
-            inspection.state, inspection.error, inspection.failed_stage = "queued", None, None
+            inspection.state, inspection.error, inspection.failed_stage = InspectionState.QUEUED, None, None
             inspection.started_at, inspection.ended_at = None, None
             inspection.attempt, inspection.progress, inspection.expires_at = inspection.attempt + 1, 0.0, None
             for column, value in more.items():
@@ -210,5 +213,5 @@ def _task_view(task: Task, path: str | None) -> TaskView:
         digest=task.digest,
         facts=task.facts,
         error=task.error,
-        path=path if task.state == "succeeded" else None,
+        path=path if task.state == TaskState.SUCCEEDED else None,
     )

@@ -12,12 +12,10 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
-from store.models import Attempt, Inspection, Task
+from core.states import AttemptOutcome, TaskState
+from store.models import LEASABLE, Attempt, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, Lease, Result
-
-LEASABLE = ("queued", "running")
-"""States of an inspection whose tasks may start."""
 
 
 def lock_inspection(session: Session, inspection_id: str) -> Inspection:
@@ -38,13 +36,13 @@ def changed(session: Session, statement: Update) -> bool:
 
 def held(lease: Lease) -> tuple[ColumnElement[bool], ...]:
     """The condition under which a lease still counts."""
-    return (Task.id == lease.task_id, Task.fence == lease.fence, Task.state == "leased")
+    return (Task.id == lease.task_id, Task.fence == lease.fence, Task.state == TaskState.LEASED)
 
 
 def lease_of(session: Session, inspection: Inspection, task: Task) -> Lease:
     """The lease as a value, with the results of the task's dependencies."""
     query = select(Task).where(
-        Task.inspection_id == inspection.id, Task.key.in_(task.depends), Task.state == "succeeded"
+        Task.inspection_id == inspection.id, Task.key.in_(task.depends), Task.state == TaskState.SUCCEEDED
     )
     done = session.scalars(query).all()
     names = [dep.fingerprint for dep in done]
@@ -91,13 +89,18 @@ def begin_attempt(session: Session, task: Task, now: datetime) -> None:
             owner=task.lease_owner or "",
             fingerprint=task.fingerprint or "",
             started_at=now,
-            outcome="running",
+            outcome=AttemptOutcome.RUNNING,
         )
     )
 
 
 def end_attempt(
-    session: Session, task_id: int, fence: int, now: datetime, outcome: str, values: Mapping[str, Any] | None = None
+    session: Session,
+    task_id: int,
+    fence: int,
+    now: datetime,
+    outcome: AttemptOutcome,
+    values: Mapping[str, Any] | None = None,
 ) -> None:
     """Close the history of a lease."""
     where = (Attempt.task_id == task_id, Attempt.fence == fence)
@@ -111,9 +114,9 @@ def give_back(task: Task, inspection: Inspection, now: datetime, *, counts: bool
     if not counts:
         task.attempt -= 1
     if inspection.state in LEASABLE:
-        task.state = "runnable"
+        task.state = TaskState.RUNNABLE
     else:
-        task.state, task.ended_at = "cancelled", now
+        task.state, task.ended_at = TaskState.CANCELLED, now
 
 
 def put_result(session: Session, result: Result, now: datetime) -> ResultRow:

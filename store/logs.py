@@ -17,6 +17,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from core.errors import BadInput
+from core.task_key import key_of_stem
 from store.artifacts import ArtifactStore
 
 FOLDER = "logs"
@@ -88,7 +89,7 @@ class InspectionLogs:
 
 
 def _task_of(path: str) -> str:
-    return PurePosixPath(path).name.removesuffix(_SUFFIX).replace("__", "/")
+    return key_of_stem(PurePosixPath(path).name.removesuffix(_SUFFIX))
 
 
 def _line(task: str, text: str, before: str | None) -> LogLine:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from enum import StrEnum
 from typing import Any
 
 from sqlalchemy import JSON, BigInteger, DateTime, Dialect, ForeignKey, Index, MetaData, String, UniqueConstraint
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from sqlalchemy.types import TypeDecorator
 
-ACTIVE_INSPECTION = ("queued", "running", "cancelling")
+from core.states import AttemptOutcome, InspectionState, TaskState
+
+LEASABLE = (InspectionState.QUEUED, InspectionState.RUNNING)
+"""States of an inspection whose tasks may start."""
+ACTIVE_INSPECTION = (*LEASABLE, InspectionState.CANCELLING)
 """States of an inspection that is not over."""
-OVER_TASK = ("succeeded", "failed", "skipped", "cancelled")
+OVER_TASK = (TaskState.SUCCEEDED, TaskState.FAILED, TaskState.SKIPPED, TaskState.CANCELLED)
 """States of a task that will not change by itself."""
 
 
@@ -28,6 +33,25 @@ class UtcDateTime(TypeDecorator[datetime]):
     def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
         """Read back with its zone."""
         return None if value is None else value.replace(tzinfo=UTC)
+
+
+class Choice(TypeDecorator[StrEnum]):
+    """One of the values of an enumeration, stored as its text; read back as its member."""
+
+    impl = String
+    cache_ok = True
+
+    def __init__(self, kind: type[StrEnum]) -> None:
+        super().__init__(16)
+        self.kind = kind
+
+    def process_bind_param(self, value: StrEnum | None, dialect: Dialect) -> str | None:
+        """Store the plain text."""
+        return None if value is None else str(value)
+
+    def process_result_value(self, value: str | None, dialect: Dialect) -> StrEnum | None:
+        """Read back as a member."""
+        return None if value is None else self.kind(value)
 
 
 class Base(DeclarativeBase):
@@ -60,8 +84,7 @@ class Inspection(Base):
     __tablename__ = "inspections"
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
-    state: Mapped[str] = mapped_column(String(16), index=True)
-    """queued, running, cancelling, cancelled, succeeded, partial, failed."""
+    state: Mapped[InspectionState] = mapped_column(Choice(InspectionState), index=True)
     video_path: Mapped[str]
     video_sha256: Mapped[str] = mapped_column(String(64))
     annotations_path: Mapped[str | None]
@@ -123,8 +146,7 @@ class Task(Base):
     args: Mapped[dict[str, Any]]
     depends: Mapped[list[str]]
     optional: Mapped[bool]
-    state: Mapped[str] = mapped_column(String(16))
-    """waiting, runnable, leased, succeeded, failed, skipped, cancelled."""
+    state: Mapped[TaskState] = mapped_column(Choice(TaskState))
     fingerprint: Mapped[str | None] = mapped_column(String(64), index=True)
     attempt: Mapped[int] = mapped_column(default=0)
     """Attempts begun, less those that were given back unharmed."""
@@ -161,8 +183,7 @@ class Attempt(Base):
     fingerprint: Mapped[str] = mapped_column(String(64))
     started_at: Mapped[datetime]
     ended_at: Mapped[datetime | None]
-    outcome: Mapped[str] = mapped_column(String(16))
-    """running, succeeded, failed, retried, released, expired, cancelled, refused."""
+    outcome: Mapped[AttemptOutcome] = mapped_column(Choice(AttemptOutcome))
     seconds: Mapped[float | None]
     peak_rss_bytes: Mapped[int | None] = mapped_column(BigInteger)
     error: Mapped[dict[str, Any] | None]

@@ -15,11 +15,11 @@ from typing import Any
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
+from core.states import AttemptOutcome, InspectionState, TaskState
 from store.advance import accept, advance
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import (
-    LEASABLE,
     begin_attempt,
     changed,
     end_attempt,
@@ -29,7 +29,7 @@ from store.leasing import (
     lock_inspection,
     put_result,
 )
-from store.models import Inspection, Task
+from store.models import LEASABLE, Inspection, Task
 from store.records import Lease, Result
 from store.remaking import remake, vanished
 
@@ -80,18 +80,20 @@ class Plan:
                 self._go_on(session, inspection, now)
                 return None
             values = {
-                "state": "leased",
+                "state": TaskState.LEASED,
                 "fence": Task.fence + 1,
                 "attempt": Task.attempt + 1,
                 "lease_owner": owner,
                 "lease_expires_at": now + timedelta(seconds=self.lease_s),
                 "started_at": now,
             }
-            if not changed(session, update(Task).where(Task.id == task_id, Task.state == "runnable").values(values)):
+            if not changed(
+                session, update(Task).where(Task.id == task_id, Task.state == TaskState.RUNNABLE).values(values)
+            ):
                 return None
             task = session.get_one(Task, task_id, populate_existing=True)
             begin_attempt(session, task, now)
-            inspection.state, inspection.started_at = "running", inspection.started_at or now
+            inspection.state, inspection.started_at = InspectionState.RUNNING, inspection.started_at or now
             return lease_of(session, inspection, task)
 
     def heartbeat(self, beats: Iterable[tuple[Lease, float, str]]) -> list[Lease]:
@@ -109,7 +111,7 @@ class Plan:
     def cancelling(self, inspection_ids: Collection[str]) -> set[str]:
         """Which of these inspections were asked to stop: a cheap question to ask every second."""
         with self.db.read() as session:
-            stopping = Inspection.state.in_(("cancelling", "cancelled"))
+            stopping = Inspection.state.in_((InspectionState.CANCELLING, InspectionState.CANCELLED))
             return set(session.scalars(select(Inspection.id).where(Inspection.id.in_(inspection_ids), stopping)))
 
     def complete(self, lease: Lease, result: Result) -> bool:
@@ -120,7 +122,7 @@ class Plan:
         measured = {"seconds": result.seconds, "peak_rss_bytes": result.peak_rss_bytes}
         with self.db.write() as session:
             inspection, now = lock_inspection(session, lease.inspection_id), self.db.now(session)
-            task = _end(session, lease, now, "succeeded", measured)
+            task = _end(session, lease, now, AttemptOutcome.SUCCEEDED, measured)
             if task is None:
                 return False
             accept(session, task, put_result(session, result, now), now, reused=False)
@@ -129,7 +131,7 @@ class Plan:
 
     def fail(
         self, lease: Lease, error: Mapping[str, Any], *, retry: bool, seconds: float = 0.0, peak_rss_bytes: int = 0
-    ) -> str:
+    ) -> AttemptOutcome:
         """End an attempt that did not work.
 
         Args:
@@ -143,13 +145,13 @@ class Plan:
         with self.db.write() as session:
             inspection, now = lock_inspection(session, lease.inspection_id), self.db.now(session)
             again = retry and lease.attempt < self.max_attempts and inspection.state in LEASABLE
-            outcome = "retried" if again else "failed"
+            outcome = AttemptOutcome.RETRIED if again else AttemptOutcome.FAILED
             task = _end(session, lease, now, outcome, {**measured, "error": dict(error)})
             if task is None:
-                return "refused"
+                return AttemptOutcome.REFUSED
             task.lease_expires_at, task.error = None, dict(error)
             task.seconds, task.peak_rss_bytes = seconds, peak_rss_bytes
-            task.state, task.ended_at = ("runnable", None) if again else ("failed", now)
+            task.state, task.ended_at = (TaskState.RUNNABLE, None) if again else (TaskState.FAILED, now)
             self._go_on(session, inspection, now)
             return outcome
 
@@ -157,7 +159,7 @@ class Plan:
         """Give a task back unharmed, e.g. because the runner stops; the attempt does not count."""
         with self.db.write() as session:
             inspection, now = lock_inspection(session, lease.inspection_id), self.db.now(session)
-            task = _end(session, lease, now, "released")
+            task = _end(session, lease, now, AttemptOutcome.RELEASED)
             if task is None:
                 return False
             give_back(task, inspection, now, counts=False)
@@ -168,7 +170,7 @@ class Plan:
         """Give a task back because the files of these dependencies are gone, and have them made anew."""
         with self.db.write() as session:
             inspection, now = lock_inspection(session, lease.inspection_id), self.db.now(session)
-            task = _end(session, lease, now, "released")
+            task = _end(session, lease, now, AttemptOutcome.RELEASED)
             if task is None:
                 return False
             give_back(task, inspection, now, counts=False)
@@ -180,7 +182,9 @@ class Plan:
         """The sweeper: free every task whose lease ran out; returns how many."""
         with self.db.read() as session:
             late = Task.lease_expires_at < self.db.now(session)
-            ids = session.scalars(select(Task.inspection_id).where(Task.state == "leased", late).distinct()).all()
+            ids = session.scalars(
+                select(Task.inspection_id).where(Task.state == TaskState.LEASED, late).distinct()
+            ).all()
         return sum(self._free(inspection_id, None) for inspection_id in ids)
 
     def take_over(self, inspection_id: str, *, owner_prefix: str = "") -> int:
@@ -194,7 +198,9 @@ class Plan:
         """The same for every inspection: what a server does that starts again after a crash."""
         with self.db.read() as session:
             mine = Task.lease_owner.startswith(owner_prefix, autoescape=True)
-            ids = session.scalars(select(Task.inspection_id).where(Task.state == "leased", mine).distinct()).all()
+            ids = session.scalars(
+                select(Task.inspection_id).where(Task.state == TaskState.LEASED, mine).distinct()
+            ).all()
         return sum(self._free(inspection_id, owner_prefix) for inspection_id in ids)
 
     def runnable(self) -> dict[str, int]:
@@ -203,7 +209,7 @@ class Plan:
             query = (
                 select(Task.queue, func.count())
                 .join(Inspection, Inspection.id == Task.inspection_id)
-                .where(Task.state == "runnable", Inspection.state.in_(LEASABLE))
+                .where(Task.state == TaskState.RUNNABLE, Inspection.state.in_(LEASABLE))
                 .group_by(Task.queue)
             )
             return {queue: count for queue, count in session.execute(query)}  # noqa: C416 - rows are not plain tuples
@@ -211,35 +217,36 @@ class Plan:
     def leased(self) -> set[str]:
         """Fingerprints that somebody works on now."""
         with self.db.read() as session:
-            query = select(Task.fingerprint).where(Task.state == "leased", Task.fingerprint.is_not(None))
+            query = select(Task.fingerprint).where(Task.state == TaskState.LEASED, Task.fingerprint.is_not(None))
             return {fingerprint for fingerprint in session.scalars(query) if fingerprint}
 
     def _free(self, inspection_id: str, owner_prefix: str | None) -> int:
         """Free the expired leases of one inspection, or those of an owner when a prefix is given."""
         with self.db.write() as session:
             inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
-            leased = select(Task).where(Task.inspection_id == inspection_id, Task.state == "leased")
+            leased = select(Task).where(Task.inspection_id == inspection_id, Task.state == TaskState.LEASED)
             if owner_prefix is None:
                 leased = leased.where(Task.lease_expires_at < now)
             else:
                 leased = leased.where(Task.lease_owner.startswith(owner_prefix, autoescape=True))
             tasks = session.scalars(leased).all()
+            outcome = AttemptOutcome.EXPIRED if owner_prefix is None else AttemptOutcome.RELEASED
             for task in tasks:
-                end_attempt(session, task.id, task.fence, now, "released" if owner_prefix is not None else "expired")
+                end_attempt(session, task.id, task.fence, now, outcome)
                 give_back(task, inspection, now, counts=owner_prefix is None)
-                if task.state == "runnable" and task.attempt >= self.max_attempts:
+                if task.state == TaskState.RUNNABLE and task.attempt >= self.max_attempts:
                     _lose(task, now)
             self._go_on(session, inspection, now)
             return len(tasks)
 
-    def cancel(self, inspection_id: str) -> str:
+    def cancel(self, inspection_id: str) -> InspectionState:
         """Ask to stop: nothing starts any more, running tasks are stopped by their runners. Returns the state."""
         with self.db.write() as session:
             inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
             if inspection.state in LEASABLE:
-                inspection.state, inspection.updated_at = "cancelling", now
-                waiting = (Task.inspection_id == inspection_id, Task.state.in_(("waiting", "runnable")))
-                changed(session, update(Task).where(*waiting).values(state="cancelled", ended_at=now))
+                inspection.state, inspection.updated_at = InspectionState.CANCELLING, now
+                waiting = (Task.inspection_id == inspection_id, Task.state.in_((TaskState.WAITING, TaskState.RUNNABLE)))
+                changed(session, update(Task).where(*waiting).values(state=TaskState.CANCELLED, ended_at=now))
             self._go_on(session, inspection, now)
             return inspection.state
 
@@ -247,28 +254,30 @@ class Plan:
         """What follows every change: advance, or finish a cancellation once nothing runs."""
         session.flush()
         advance(session, self.graph, inspection, now)
-        if inspection.state == "cancelling":
-            running = select(Task.id).where(Task.inspection_id == inspection.id, Task.state == "leased").limit(1)
+        if inspection.state == InspectionState.CANCELLING:
+            running = (
+                select(Task.id).where(Task.inspection_id == inspection.id, Task.state == TaskState.LEASED).limit(1)
+            )
             if session.scalar(running) is None:
-                inspection.state, inspection.ended_at, inspection.updated_at = "cancelled", now, now
+                inspection.state, inspection.ended_at, inspection.updated_at = InspectionState.CANCELLED, now, now
 
 
 def _runnable(inspection_id: Any, queues: Collection[str]) -> tuple[Any, ...]:
-    return (Task.inspection_id == inspection_id, Task.state == "runnable", Task.queue.in_(queues))
+    return (Task.inspection_id == inspection_id, Task.state == TaskState.RUNNABLE, Task.queue.in_(queues))
 
 
 def _end(
-    session: Session, lease: Lease, now: datetime, outcome: str, values: Mapping[str, Any] | None = None
+    session: Session, lease: Lease, now: datetime, outcome: AttemptOutcome, values: Mapping[str, Any] | None = None
 ) -> Task | None:
     """Close an attempt: its task while the lease holds, None (and the attempt ``refused``) when it was lost."""
     holds = changed(session, update(Task).where(*held(lease)).values(lease_owner=None))
-    end_attempt(session, lease.task_id, lease.fence, now, outcome if holds else "refused", values)
+    end_attempt(session, lease.task_id, lease.fence, now, outcome if holds else AttemptOutcome.REFUSED, values)
     return session.get_one(Task, lease.task_id, populate_existing=True) if holds else None
 
 
 def _lose(task: Task, now: datetime) -> None:
     """A task whose worker vanished as often as attempts are allowed has failed."""
-    task.state, task.ended_at = "failed", now
+    task.state, task.ended_at = TaskState.FAILED, now
     task.error = {
         "kind": "ResourceError",
         "code": "worker_lost",

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from core.stage import Facts
+from core.states import InspectionState, TaskState
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class TaskView:
     position: int
     depends: tuple[str, ...]
     optional: bool
-    state: str
+    state: TaskState
     attempt: int
     fingerprint: str | None
     seconds: float | None
@@ -86,7 +87,7 @@ class InspectionView:
     """An inspection as others may see it."""
 
     id: str
-    state: str
+    state: InspectionState
     files: InputFiles
     input_digest: str
     settings: Mapping[str, Any]

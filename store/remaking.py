@@ -7,6 +7,7 @@ from collections.abc import Collection
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
+from core.states import TaskState
 from store.models import Inspection, Result, Task
 
 
@@ -16,7 +17,7 @@ def vanished(session: Session, task: Task) -> list[str]:
         select(Task.key)
         .outerjoin(Result, Result.fingerprint == Task.fingerprint)
         .where(Task.inspection_id == task.inspection_id, Task.key.in_(task.depends))
-        .where(Task.state == "succeeded", Result.fingerprint.is_(None))
+        .where(Task.state == TaskState.SUCCEEDED, Result.fingerprint.is_(None))
     )
     return list(session.scalars(query))
 
@@ -28,10 +29,10 @@ def remake(session: Session, inspection: Inspection, keys: Collection[str]) -> N
     """
     tasks = session.scalars(select(Task).where(Task.inspection_id == inspection.id)).all()
     for task in tasks:
-        if task.key in keys and task.state == "succeeded":
+        if task.key in keys and task.state == TaskState.SUCCEEDED:
             session.execute(delete(Result).where(Result.fingerprint == task.fingerprint))
-            task.state, task.reused, task.attempt = "waiting", False, 0
+            task.state, task.reused, task.attempt = TaskState.WAITING, False, 0
             task.facts, task.digest, task.ended_at, task.progress = None, None, None, 0.0
-        elif task.state == "runnable" and not set(keys).isdisjoint(task.depends):
-            task.state = "waiting"
+        elif task.state == TaskState.RUNNABLE and not set(keys).isdisjoint(task.depends):
+            task.state = TaskState.WAITING
     session.flush()

@@ -12,6 +12,7 @@ from sqlalchemy import ColumnElement, and_, case, func, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.report.summary import stage_state
+from core.states import InspectionState, StageState, TaskState
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import changed
@@ -29,8 +30,7 @@ class StageStatus:
     """One stage, summed over its tasks."""
 
     name: str
-    state: str
-    """waiting, running, succeeded, failed, skipped or cancelled."""
+    state: StageState
     count: StageCount
     attempts: int
     reused: int
@@ -48,7 +48,7 @@ class InspectionStatus:
 
     row: Inspection
     """Detached; its columns are loaded."""
-    state: str
+    state: InspectionState
     """As shown: an ended plan whose files are not published yet still runs."""
     stage: str | None
     """Where it is; None when it is over."""
@@ -65,17 +65,18 @@ class InspectionStatus:
         return self.state in ACTIVE_INSPECTION
 
 
-def shown_state(row: Inspection) -> str:
+def shown_state(row: Inspection) -> InspectionState:
     """State as others see it; see `shown_state_column` for the same in SQL."""
     if row.state in ACTIVE_INSPECTION or row.published >= row.attempt:
         return row.state
-    return "cancelling" if row.state == "cancelled" else "running"
+    return InspectionState.CANCELLING if row.state == InspectionState.CANCELLED else InspectionState.RUNNING
 
 
 def shown_state_column() -> ColumnElement[str]:
     """`shown_state` as an expression."""
     settled = or_(Inspection.state.in_(ACTIVE_INSPECTION), Inspection.published >= Inspection.attempt)
-    return case((settled, Inspection.state), (Inspection.state == "cancelled", "cancelling"), else_="running")
+    stopping = (Inspection.state == InspectionState.CANCELLED, InspectionState.CANCELLING)
+    return case((settled, Inspection.state), stopping, else_=InspectionState.RUNNING)
 
 
 @dataclass(frozen=True)
@@ -111,12 +112,12 @@ class Statuses:
             stage=_current(stages, state, over),
             stages=stages,
             progress=self._progress(row, state, stages),
-            queue_position=_position(session, row) if state == "queued" else None,
+            queue_position=_position(session, row) if state == InspectionState.QUEUED else None,
             selected_case=_selected(session, row.id) if state not in ACTIVE_INSPECTION else None,
         )
 
-    def _progress(self, row: Inspection, state: str, stages: Iterable[StageStatus]) -> float:
-        if state == "succeeded":
+    def _progress(self, row: Inspection, state: InspectionState, stages: Iterable[StageStatus]) -> float:
+        if state == InspectionState.SUCCEEDED:
             return 1.0
         share = in_steps(plan_share(self.graph, {stage.name: stage.count for stage in stages if stage.count.total}))
         return max(row.progress, min(share, _ALMOST))
@@ -167,7 +168,7 @@ def _stage(name: str, groups: Sequence[Any], over: bool) -> StageStatus:
     count = StageCount(
         total=sum(by_state.values()),
         over=sum(n for state, n in by_state.items() if state in OVER_TASK),
-        running=float(sum(group.progress or 0.0 for group in groups if group.state == "leased")),
+        running=float(sum(group.progress or 0.0 for group in groups if group.state == TaskState.LEASED)),
     )
     state = _stage_state(by_state, count, over)
     return StageStatus(
@@ -183,21 +184,21 @@ def _stage(name: str, groups: Sequence[Any], over: bool) -> StageStatus:
     )
 
 
-def _stage_state(by_state: Mapping[str, int], count: StageCount, over: bool) -> str:
+def _stage_state(by_state: Mapping[TaskState, int], count: StageCount, over: bool) -> StageState:
     if count.over < count.total:
-        return "running" if "leased" in by_state or count.over else "waiting"
+        return StageState.RUNNING if TaskState.LEASED in by_state or count.over else StageState.WAITING
     if not count.total:
-        return "skipped" if over else "waiting"
+        return StageState.SKIPPED if over else StageState.WAITING
     return stage_state(list(by_state))
 
 
-def _current(stages: Sequence[StageStatus], state: str, over: bool) -> str | None:
+def _current(stages: Sequence[StageStatus], state: InspectionState, over: bool) -> str | None:
     if state not in ACTIVE_INSPECTION:
         return None
     if over:
         return PUBLISH
-    running = [stage.name for stage in stages if stage.state == "running"]
-    waiting = [stage.name for stage in stages if stage.state == "waiting"]
+    running = [stage.name for stage in stages if stage.state == StageState.RUNNING]
+    waiting = [stage.name for stage in stages if stage.state == StageState.WAITING]
     return next(iter([*running, *waiting]), None)
 
 
@@ -207,7 +208,7 @@ def _position(session: Session, row: Inspection) -> int:
         Inspection.created_at < row.created_at,
         and_(Inspection.created_at == row.created_at, Inspection.id < row.id),
     )
-    ahead = select(func.count()).select_from(Inspection).where(Inspection.state == "queued", earlier)
+    ahead = select(func.count()).select_from(Inspection).where(Inspection.state == InspectionState.QUEUED, earlier)
     return int(session.scalar(ahead) or 0) + 1
 
 

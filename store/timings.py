@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import func, select
 
+from core.states import InspectionState, StageState, TaskState
 from store.db import Database
 from store.graph import Graph
 from store.models import Inspection, Task
@@ -39,14 +40,16 @@ def learn_timings(db: Database) -> Timings:
     """Timings of every stage that some former inspection finished."""
     latest = (
         select(Inspection.id)
-        .where(Inspection.state.in_(("succeeded", "partial")))
+        .where(Inspection.state.in_((InspectionState.SUCCEEDED, InspectionState.PARTIAL)))
         .order_by(Inspection.ended_at.desc())
         .limit(_FORMER)
         .subquery()
     )
     query = (
         select(Task.stage, func.count(), func.sum(Task.seconds))
-        .where(Task.inspection_id.in_(select(latest.c.id)), Task.state == "succeeded", Task.seconds.is_not(None))
+        .where(
+            Task.inspection_id.in_(select(latest.c.id)), Task.state == TaskState.SUCCEEDED, Task.seconds.is_not(None)
+        )
         .group_by(Task.inspection_id, Task.stage)
     )
     per_task, per_plan = defaultdict(list), defaultdict(list)
@@ -72,7 +75,7 @@ def stage_eta(stage: StageStatus, graph: Graph, timings: Timings, workers: int) 
 
 
 def _left(stage: StageStatus, graph: Graph, timings: Timings, workers: int) -> Interval | None:
-    if stage.state not in ("waiting", "running"):
+    if stage.state not in (StageState.WAITING, StageState.RUNNING):
         return (0.0, 0.0)
     timing = timings.get(stage.name)
     if timing is None:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from core.states import AttemptOutcome
+from core.task_key import file_stem
 from store.artifacts import ArtifactStore
 from store.records import Lease
 
@@ -41,7 +43,7 @@ class TaskLogs:
         with (self.folder / self._name(lease)).open("a", encoding="utf-8") as stream:
             stream.write(json.dumps({**line, **more}) + "\n")
 
-    def end(self, lease: Lease, outcome: str) -> None:
+    def end(self, lease: Lease, outcome: AttemptOutcome) -> None:
         """Say how the attempt ended, and let others read it."""
         path = self.folder / self._name(lease)
         if path.is_file():
@@ -50,7 +52,7 @@ class TaskLogs:
                 self.mirror.put(f"logs/{self._name(lease)}", path)
 
     def _name(self, lease: Lease) -> str:
-        name = f"{lease.key.replace('/', '__')}.log"
+        name = f"{file_stem(lease.key)}.log"
         return f"{lease.inspection_id}/{name}" if self.by_inspection else name
 
     @staticmethod

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Literal
 
 from core.errors import BladeAtlasError
+from core.states import RunState, StageState
 
 EventKind = Literal["opened", "started", "progress", "retry", "ended", "published", "finished"]
-OutcomeState = Literal["succeeded", "partial", "failed", "cancelled", "interrupted"]
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,7 @@ class StageOutcome:
     """One stage of a run, summed over its tasks."""
 
     name: str
-    state: str
-    """``succeeded``, ``failed``, ``skipped``, ``cancelled`` or ``waiting``."""
+    state: StageState
     done: int
     total: int
     reused: int
@@ -64,7 +63,7 @@ class StageOutcome:
 class Outcome:
     """How a run ended. Exit codes are the command line's."""
 
-    state: OutcomeState
+    state: RunState
     out: Path
     seconds: float
     """Wall time of this call."""

@@ -9,13 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from core.flags import Verdict
 from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case
 from core.report.build import Report, build_report, write_tables
 from core.report.load import load_tables, served_pieces
-from core.report.record import RunRecord, RunState, TaskRecord, TaskState
+from core.report.record import RunRecord, TaskRecord
 from core.settings import Settings
-from core.stage import Facts, key_of
+from core.stage import Facts
+from core.states import TaskState, run_state
+from core.task_key import key_of
 from core.versions import all_versions
+from store.models import OVER_TASK
 from store.records import InspectionView, TaskView
 from worker.results import MANIFEST, ResultFolders
 from worker.rows import defect_rows
@@ -60,8 +64,7 @@ def record_of(
     """The run as the report wants it, and the result folders of its finished tasks."""
     folders = Folders(tasks, results)
     error = dict(inspection.error or {})
-    states: tuple[RunState, ...] = ("succeeded", "partial", "cancelled")
-    state: RunState = next((known for known in states if known == inspection.state), "failed")
+    state = run_state(inspection.state)
     files = inspection.files
     inputs = {"video": files.video_sha256}
     if files.annotations_sha256:
@@ -83,9 +86,8 @@ def record_of(
 
 
 def _task_record(task: TaskView) -> TaskRecord:
-    states: tuple[TaskState, ...] = ("succeeded", "failed", "skipped", "cancelled")
-    state: TaskState = next((known for known in states if known == task.state), "waiting")
-    error = task.error if task.state == "failed" and task.error else {}
+    state = task.state if task.state in OVER_TASK else TaskState.WAITING
+    error = task.error if task.state == TaskState.FAILED and task.error else {}
     return TaskRecord(
         key=task.key,
         state=state,
@@ -111,8 +113,8 @@ def report_rows(report: Report) -> dict[str, Any]:
 def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> Iterator[Collection]:
     """Everything that a run publishes; its tables lie below the folder `scratch` as long as the block lasts."""
     report = build_report(record)
-    facts = {task.key: task.facts for task in record.tasks if task.state == "succeeded"}
-    files = dict(_files(folders, facts, trusted=report.verdict != "refused"))
+    facts = {task.key: task.facts for task in record.tasks if task.state == TaskState.SUCCEEDED}
+    files = dict(_files(folders, facts, trusted=report.verdict != Verdict.REFUSED))
     scratch.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="tables-", dir=scratch) as folder:
         write_tables(report, Path(folder))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from core.errors import BladeAtlasError
+from core.states import AttemptOutcome
 from store.records import Lease, TaskView
 from worker.outcome import Event, EventKind, OnEvent
 from worker.tracker import Tracker
@@ -43,13 +44,13 @@ class Reporter:
             self.tracker.running(lease.key, fraction)
             self.tell("progress", lease.key, message)
 
-    def ended(self, lease: Lease, outcome: str, error: BladeAtlasError | None) -> None:
+    def ended(self, lease: Lease, outcome: AttemptOutcome, error: BladeAtlasError | None) -> None:
         """A runner is through with a task; others may have ended with it (reused, skipped)."""
         with self._mutex:
-            self.computed += outcome == "succeeded"
+            self.computed += outcome == AttemptOutcome.SUCCEEDED
             self.tracker.idle(lease.key)
             ended = self.tracker.refresh(self.tasks())
-            if outcome == "retried":
+            if outcome == AttemptOutcome.RETRIED:
                 self.tell("retry", lease.key, error.message if error else "")
             self._send(ended)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from core.stage import Facts
+from core.task_key import piece_of, stage_of
 
 _CASE_STAGES = ("coarse", "refine")
 _TABLE_FILES: dict[str, dict[str, str]] = {
@@ -21,11 +22,12 @@ def rows_of(key: str, facts: Facts, folder: Path) -> dict[str, Any]:
 
     Tables of further models are joined with the first one's when the run is published.
     """
-    stage = key.split("/", 1)[0]
+    stage = stage_of(key)
     rows: dict[str, Any] = {"metrics": _metrics(facts)}
     if stage in _CASE_STAGES and "name" in facts:
         rows["cases"] = [facts]
-    for table, name in _TABLE_FILES.get(stage, {}).items():
+    files = {} if piece_of(key) else _TABLE_FILES.get(stage, {})
+    for table, name in files.items():
         path = folder / name
         if path.is_file():
             rows[table] = json.loads(path.read_text(encoding="utf-8"))

@@ -17,6 +17,7 @@ from core.files import require_file
 from core.fingerprint import digest_of_file
 from core.report.summary import stage_state
 from core.settings import Settings
+from core.states import RunState, TaskState, run_state
 from store.db import Database, open_sqlite
 from store.environment import deployment_settings
 from store.graph import CORE_GRAPH, Graph
@@ -28,7 +29,7 @@ from store.settings import available_cores
 from worker.folder import RunFolder, locked
 from worker.local import LocalRunners, raise_failure
 from worker.logs import TaskLogs
-from worker.outcome import OnEvent, Outcome, OutcomeState, StageOutcome
+from worker.outcome import OnEvent, Outcome, StageOutcome
 from worker.publish import record_of, report_rows
 from worker.publish_folder import publish
 from worker.reporter import Reporter
@@ -202,12 +203,12 @@ class _Run:
             self._publish()
         except KeyboardInterrupt:
             self._runners.stop()
-            return self._outcome("interrupted")
+            return self._outcome(RunState.INTERRUPTED)
         except BladeAtlasError as error:
-            return self._outcome("failed", error)
+            return self._outcome(RunState.FAILED, error)
         except OSError as error:
             message = f"the output folder '{self._folder.out}' cannot be written: {error.strerror}"
-            return self._outcome("failed", DiskFull(message, where="--out"))
+            return self._outcome(RunState.FAILED, DiskFull(message, where="--out"))
         return self._outcome()
 
     def _is_over(self) -> bool:
@@ -221,17 +222,16 @@ class _Run:
         self._reporter.tell("published")
         self._remove(self._inspections.unused())
 
-    def _outcome(self, state: OutcomeState | None = None, error: BladeAtlasError | None = None) -> Outcome:
+    def _outcome(self, state: RunState | None = None, error: BladeAtlasError | None = None) -> Outcome:
         inspection, tasks = self._inspections.get(_LOCAL), self._inspections.tasks(_LOCAL)
-        states: tuple[OutcomeState, ...] = ("succeeded", "partial", "cancelled")
-        reached: OutcomeState = next((known for known in states if known == inspection.state), "failed")
+        reached = run_state(inspection.state)
         ended = state or reached
-        if ended == "cancelled":
+        if ended == RunState.CANCELLED:
             error = Cancelled("the run was cancelled", where="run")
-        elif ended != "interrupted" and error is None and inspection.error:
+        elif ended != RunState.INTERRUPTED and error is None and inspection.error:
             error = error_from_dict(inspection.error)
         self._reporter.tell("finished", state=ended)
-        done, computed = sum(task.state == "succeeded" for task in tasks), self._reporter.computed
+        done, computed = sum(task.state == TaskState.SUCCEEDED for task in tasks), self._reporter.computed
         return Outcome(
             state=ended,
             out=self._folder.out,
@@ -258,7 +258,7 @@ def _stages(graph: Graph, tasks: Sequence[TaskView]) -> tuple[StageOutcome, ...]
             rows.append(
                 StageOutcome(
                     name=name,
-                    state=stage_state([task.state if task.state in OVER_TASK else "waiting" for task in own]),
+                    state=stage_state([task.state if task.state in OVER_TASK else TaskState.WAITING for task in own]),
                     done=sum(task.state in OVER_TASK for task in own),
                     total=len(own),
                     reused=sum(task.reused for task in own),

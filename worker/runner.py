@@ -14,6 +14,7 @@ from typing import Any, Protocol, TypeVar
 
 from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
+from core.states import AttemptOutcome
 from core.video.limits import MAX_FRAME_PIXELS
 from store.artifacts import UNREACHABLE
 from store.disk import NO_SPACE
@@ -44,7 +45,7 @@ class Observer(Protocol):
     def progressed(self, lease: Lease, fraction: float, message: str) -> None:
         """A task reports."""
 
-    def ended(self, lease: Lease, outcome: str, error: BladeAtlasError | None) -> None:
+    def ended(self, lease: Lease, outcome: AttemptOutcome, error: BladeAtlasError | None) -> None:
         """A task is over: succeeded, reused, retried, failed, released, refused."""
 
 
@@ -91,18 +92,18 @@ class TaskRunner:
         self.observer.ended(lease, outcome, error)
         return outcome
 
-    def _execute(self, held: Held) -> tuple[str, BladeAtlasError | None]:
+    def _execute(self, held: Held) -> tuple[AttemptOutcome, BladeAtlasError | None]:
         lease = held.lease
         # Finished files whose commit a crash cut off, or that another worker has just made, are not made again.
         finished = self.results.find(lease.stage, lease.fingerprint)
         if finished is not None:
-            accepted = self._complete(lease, finished, finished.peak_rss_bytes) == "succeeded"
-            return "reused" if accepted else "refused", None
+            accepted = self._complete(lease, finished, finished.peak_rss_bytes) == AttemptOutcome.SUCCEEDED
+            return AttemptOutcome.REUSED if accepted else AttemptOutcome.REFUSED, None
         missing = [key for key, path in lease.inputs.items() if not self.results.have(path)]
         if missing:
             _log.warning("results_vanished", **ids(lease), missing=missing)
             remade = self._patiently(lambda: self.plan.remake(lease, missing))
-            return "released" if remade else "refused", None
+            return AttemptOutcome.RELEASED if remade else AttemptOutcome.REFUSED, None
         temporary = self.results.begin(lease.stage, lease.fingerprint)
         try:
             ended = self._in_child(held, temporary)
@@ -127,7 +128,7 @@ class TaskRunner:
 
         return process.wait(progress, lambda: "interrupted" if self.interrupted.is_set() else held.stop)
 
-    def _end_log(self, lease: Lease, outcome: str) -> None:
+    def _end_log(self, lease: Lease, outcome: AttemptOutcome) -> None:
         try:
             self.logs.end(lease, outcome)
         except (OSError, BladeAtlasError) as failure:
@@ -154,11 +155,12 @@ class TaskRunner:
             "threads": 1 if stage.fan_out else settings.compute.threads or available_cores(),
         }
 
-    def _complete(self, lease: Lease, manifest: Manifest, peak_rss_bytes: int) -> str:
+    def _complete(self, lease: Lease, manifest: Manifest, peak_rss_bytes: int) -> AttemptOutcome:
         result = result_of(manifest, self.results, peak_rss_bytes=peak_rss_bytes)
-        return "succeeded" if self._patiently(lambda: self.plan.complete(lease, result)) else "refused"
+        accepted = self._patiently(lambda: self.plan.complete(lease, result))
+        return AttemptOutcome.SUCCEEDED if accepted else AttemptOutcome.REFUSED
 
-    def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> str:
+    def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> AttemptOutcome:
         # A full disk would fail every other task as well, and tolerating it would spoil the result unseen.
         record = {**error.to_dict(), "stops_run": isinstance(error, DiskFull)}
         retry = error.retryable and error.code not in _SAME_AGAIN
@@ -166,16 +168,17 @@ class TaskRunner:
             lambda: self.plan.fail(lease, record, retry=retry, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
         )
 
-    def _give_up(self, held: Held, error: BladeAtlasError) -> str:
+    def _give_up(self, held: Held, error: BladeAtlasError) -> AttemptOutcome:
         if error.code != UNREACHABLE:
             return self._fail(held.lease, error, 0.0, 0)
         # Nobody's fault but the store's, and what was computed is kept here: again when it answers.
         self.interrupted.wait(_STORE_PAUSE_S)
         return self._release(held.lease)
 
-    def _release(self, lease: Lease) -> str:
+    def _release(self, lease: Lease) -> AttemptOutcome:
         # A lost lease is given back as well: the plan refuses it, and the attempt says so.
-        return "released" if self._patiently(lambda: self.plan.release(lease)) else "refused"
+        released = self._patiently(lambda: self.plan.release(lease))
+        return AttemptOutcome.RELEASED if released else AttemptOutcome.REFUSED
 
     def _patiently(self, call: Callable[[], T]) -> T:
         return patiently(self.plan.db, call, self.interrupted)

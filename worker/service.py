@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from core.errors import BladeAtlasError
+from core.states import AttemptOutcome
 from store.artifacts import ArtifactStore
 from store.db import Database
 from store.graph import Graph
@@ -47,7 +48,7 @@ class TaskLog:
     def progressed(self, lease: Lease, fraction: float, message: str) -> None:
         """Progress is in the database, not in the log."""
 
-    def ended(self, lease: Lease, outcome: str, error: BladeAtlasError | None) -> None:
+    def ended(self, lease: Lease, outcome: AttemptOutcome, error: BladeAtlasError | None) -> None:
         """A task is over."""
         said = {"code": error.code, "message": error.message} if error else {}
         _log.info("task_ended", **ids(lease), outcome=outcome, **said)

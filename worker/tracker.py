@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from core.states import RunState, TaskState
+from core.task_key import stage_of
 from store.graph import Graph
 from store.models import OVER_TASK
 from store.progress import StageCount, plan_share, stage_weights
@@ -49,13 +51,13 @@ class Tracker:
 
     def event(self, kind: EventKind, key: str = "", message: str = "", state: str = "") -> Event:
         """An event of this moment; its fraction never falls."""
-        stage = key.split("/", 1)[0]
+        stage = stage_of(key)
         counts = self._counts()
         own = counts.get(stage, StageCount(0, 0))
         self._fraction = max(self._fraction, plan_share(self._graph, counts))
         return Event(
             kind=kind,
-            fraction=1.0 if kind == "finished" and state == "succeeded" else self._fraction,
+            fraction=1.0 if kind == "finished" and state == RunState.SUCCEEDED else self._fraction,
             eta_s=self._eta(),
             stage=stage,
             key=key,
@@ -80,7 +82,7 @@ class Tracker:
         """Seconds left: known tasks at the mean of their stage, the rest at what a unit of weight took so far."""
         took: dict[str, list[float]] = {}
         for task in self._tasks.values():
-            if task.state == "succeeded" and task.seconds is not None:
+            if task.state == TaskState.SUCCEEDED and task.seconds is not None:
                 took.setdefault(task.stage, []).append(task.seconds)
         counts = self._counts()
         weights = stage_weights(self._graph, counts)

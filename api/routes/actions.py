@@ -20,6 +20,7 @@ from api.services import Services
 from api.state import state_of
 from core.fingerprint import canonical_json
 from core.settings import Settings
+from core.states import InspectionState
 from store.artifacts import ArtifactStore
 from store.forgetting import forget_from
 from store.leasing import input_files
@@ -63,7 +64,7 @@ async def cancel(request: Request, caller: CallerOf, inspection_id: str) -> Resp
 def _cancel(services: Services, inspection_id: str, owner: str) -> None:
     find_inspection(services, inspection_id, owner)
     reached = services.plan.cancel(inspection_id)
-    if reached not in ("cancelling", "cancelled"):
+    if reached not in (InspectionState.CANCELLING, InspectionState.CANCELLED):
         raise Refused(HTTPStatus.CONFLICT, "not_cancellable", f"the inspection is over: {reached}")
     services.wake(inspection_id)
 

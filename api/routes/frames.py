@@ -16,6 +16,7 @@ from api.problems import not_found, responses
 from api.services import Services
 from api.state import state_of
 from core.gallery.palette import RGB, label_colors
+from core.mapping.rows import Outcome
 from store.tables import DETECTIONS, RowFilter, labels, read_rows
 
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["results"])
@@ -84,7 +85,7 @@ def draw(jpeg: bytes, crop: Mapping[str, int], rows: Sequence[Mapping[str, Any]]
         right = row["box_x2"] * crop["source_width"] - crop["x0"]
         bottom = row["box_y2"] * crop["source_height"] - crop["y0"]
         color = colors[row["label"]]
-        pen.rectangle((left, top, right, bottom), outline=color, width=thick if row["outcome"] == "mapped" else 1)
+        pen.rectangle((left, top, right, bottom), outline=color, width=thick if row["outcome"] == Outcome.MAPPED else 1)
         pen.text((left + thick + 1, top + thick), _tag(row), fill=color)
     out = io.BytesIO()
     picture.save(out, "JPEG", quality=_JPEG_QUALITY)

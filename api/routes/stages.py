@@ -17,6 +17,7 @@ from api.problems import not_found, responses
 from api.schemas import EXAMPLE_STAGE, StageItem
 from api.services import Services
 from api.state import State, state_of
+from core.task_key import stage_of
 from store.models import Attempt
 from store.status import StageStatus, Statuses
 
@@ -94,5 +95,5 @@ def _workers(services: Services, inspection_id: str) -> dict[str, list[str]]:
     found: dict[str, set[str]] = defaultdict(set)
     with services.db.read() as session:
         for key, owner in session.execute(query):
-            found[key.split("/", 1)[0]].add(owner)
+            found[stage_of(key)].add(owner)
     return {stage: sorted(owners) for stage, owners in found.items()}

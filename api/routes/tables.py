@@ -12,14 +12,16 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from api import table_schemas as schemas
 from api.auth import CallerOf
 from api.caching import matches
+from api.enumerations import OneOf
 from api.finding import find_inspection
 from api.negotiation import CSV_RESPONSE, Format, TableForm, table, wants_csv
 from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
 from api.parameters import Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
+from core.mapping.rows import Outcome
 from store.artifact_rows import ArtifactRows
-from store.models import Inspection
+from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state
 from store.tables import (
     CASES,
@@ -111,7 +113,7 @@ def detections(
     caller: CallerOf,
     inspection_id: str,
     asked: AskedFor,
-    outcome: Literal["mapped", "approximate", "unplaced"] | None = None,
+    outcome: Annotated[str, OneOf(Outcome)] | None = None,
     label: Label = None,
     blade: Blade = None,
     defect_id: Annotated[int | None, Query(ge=0, lt=2**31)] = None,
@@ -206,7 +208,7 @@ def quality(
 
 def not_ready(row: Inspection, what: str) -> Refused:
     """409 while it may still come, 404 once it will not."""
-    if shown_state(row) in ("queued", "running", "cancelling"):
+    if shown_state(row) in ACTIVE_INSPECTION:
         headers = {"Retry-After": "5"}
         detail = f"the {what} is there when the inspection is over"
         return Refused(HTTPStatus.CONFLICT, "not_ready", detail, headers=headers, retryable=True)

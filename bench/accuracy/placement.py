@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from bench.accuracy.truth import TrueBox, Truth
 from core.geometry.boxes import box_iou
 from core.geometry.similarity import Similarity
+from core.mapping.rows import Outcome
 
 F64 = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ class Placement:
     @property
     def mapped(self) -> bool:
         """Placed with full trust, by the row's own word."""
-        return self.outcome == "mapped"
+        return self.outcome == Outcome.MAPPED
 
     @property
     def right(self) -> bool:

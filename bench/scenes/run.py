@@ -19,6 +19,7 @@ from bench.accuracy.score import score_result
 from bench.scenes.make import is_made, make_scene
 from bench.scenes.spec import Scene
 from core.errors import StageFailed
+from core.flags import Severity
 
 LIMIT_S = 900.0
 """A run that takes longer is ended and counts as failed."""
@@ -93,7 +94,7 @@ class Bench:
             "seconds": round(seconds, 1) if whole else None,
             "exit": code,
             "verdict": quality.get("verdict"),
-            "flags": sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != "info"}),
+            "flags": sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != Severity.INFO}),
             "funnel": quality.get("funnel"),
             "score": score_result(out, source / "truth"),
         }

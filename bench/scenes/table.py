@@ -9,6 +9,7 @@ from typing import Any
 
 from bench.scenes.pooled import right_share
 from bench.scenes.spec import Scene
+from core.flags import Verdict
 
 HEAD = (
     "scene",
@@ -43,7 +44,7 @@ def _row(scene: Scene, one: Found) -> list[str]:
     place, defects, confidence = score["placement"], score["defects"], score["confidence"]
     verdict = str(one["verdict"]) + (f" ({', '.join(one['flags'])})" if one["flags"] else "")
     if scene.expect == "flagged":
-        verdict += ": as expected" if one["verdict"] != "ok" else ": **not seen**"
+        verdict += ": as expected" if one["verdict"] != Verdict.OK else ": **not seen**"
     return [
         scene.name,
         verdict,

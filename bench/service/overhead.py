@@ -17,6 +17,8 @@ from sqlalchemy import select
 from bench.service.deployment import Server, curl, serving
 from bench.speed.timing import Row, Table
 from core.errors import StageFailed
+from core.states import AttemptOutcome, InspectionState
+from core.task_key import stage_of
 from store.db import Database, open_sqlite
 from store.models import ACTIVE_INSPECTION as ACTIVE
 from store.models import Attempt
@@ -31,7 +33,7 @@ def overhead(folder: Path, repeat: int, preset: str) -> Table:
     for number in range(repeat):
         with _finished(folder / f"overhead-{number}", preset, {}, workers=2) as (database, wall):
             walls.append(wall)
-            inside.append(covered(attempts(database, ("",))))
+            inside.append(covered(attempts(database)))
     shares = [1.0 - stages / wall for stages, wall in zip(inside, walls, strict=True)]
     return Table(
         "overhead",
@@ -54,14 +56,14 @@ def covered(intervals: Iterable[Interval]) -> float:
     return total
 
 
-def attempts(database: Database, stages: tuple[str, ...]) -> list[Interval]:
-    """When stages themselves were running: not the start of their processes, not what is done with their files."""
+def attempts(database: Database, stages: tuple[str, ...] = ()) -> list[Interval]:
+    """When stages (empty = all) were running: not the start of their processes, not what is done with their files."""
     with database.read() as session:
-        rows = session.scalars(select(Attempt).where(Attempt.outcome == "succeeded")).all()
+        rows = session.scalars(select(Attempt).where(Attempt.outcome == AttemptOutcome.SUCCEEDED)).all()
     return [
         (row.ended_at - timedelta(seconds=row.seconds), row.ended_at)
         for row in rows
-        if row.key.startswith(stages) and row.ended_at is not None and row.seconds is not None
+        if (not stages or stage_of(row.key) in stages) and row.ended_at is not None and row.seconds is not None
     ]
 
 
@@ -86,7 +88,7 @@ def _finished(
         while (found := httpx.get(link, params={"wait": 30}, timeout=60).raise_for_status().json())["state"] in ACTIVE:
             pass
         wall = time.perf_counter() - began
-        if found["state"] != "succeeded":
+        if found["state"] != InspectionState.SUCCEEDED:
             raise StageFailed(f"the sample ended {found['state']}: {found['error']}", where="service")
         database = open_sqlite(data / "bladeatlas.db")
         try:

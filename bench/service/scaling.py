@@ -17,10 +17,11 @@ from bench.service.deployment import serving
 from bench.service.overhead import attempts, covered, submitted
 from bench.speed.timing import Row, Table
 from core.errors import StageFailed
+from core.states import AttemptOutcome
 from store.db import Database, open_sqlite
 from store.models import Attempt
 
-SEARCH = ("coarse/", "refine/")
+SEARCH = ("coarse", "refine")
 SEARCH_LIMIT_S = 900.0
 MANY_WINDOWS = {
     "camera.fov_deg": 85.0,
@@ -108,5 +109,5 @@ def _searched(folder: Path, preset: str, workers: int) -> Iterator[tuple[Databas
 
 def _search_ended(database: Database) -> bool:
     with database.read() as session:
-        ended = select(Attempt.key).where(Attempt.key == "reduce_refine", Attempt.outcome == "succeeded")
+        ended = select(Attempt.key).where(Attempt.key == "reduce_refine", Attempt.outcome == AttemptOutcome.SUCCEEDED)
         return session.scalar(ended) is not None

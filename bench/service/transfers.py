@@ -13,6 +13,7 @@ from bench.service.deployment import Server, begin_upload, curl, running, servin
 from bench.soak.servers import free_port
 from bench.speed.timing import Row, Table, interleaved
 from core.settings import make_settings
+from core.states import InspectionState
 from store.artifacts import ArtifactStore
 from store.db import open_sqlite
 from store.inspections import Inspections
@@ -93,7 +94,10 @@ def _publish(data: Path, source: Path) -> str:
     with database.write() as session:
         Inspections(database).create_in(session, inspection_id, files, make_settings(), "")
         row = session.get_one(Inspection, inspection_id)
-        row.state, row.published = "succeeded", row.attempt  # in one transaction: no runner may begin with it
+        row.state, row.published = (
+            InspectionState.SUCCEEDED,
+            row.attempt,
+        )  # in one transaction: no runner may begin with it
         session.add(
             Artifact(
                 inspection_id=inspection_id,

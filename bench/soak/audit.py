@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sqlalchemy import select
 
+from core.states import AttemptOutcome, TaskState
 from store.db import Database
 from store.models import Artifact, Attempt, Inspection, Result, Task
 from worker.results import MANIFEST
@@ -18,8 +19,8 @@ _PATIENCE_S = 90.0
 def wrong_attempts(database: Database) -> list[str]:
     """Tasks without exactly one accepted attempt, unless a finished result was taken up instead."""
     with database.read() as session:
-        accepted = Counter(session.scalars(select(Attempt.task_id).where(Attempt.outcome == "succeeded")))
-        tasks = session.scalars(select(Task).where(Task.state == "succeeded")).all()
+        accepted = Counter(session.scalars(select(Attempt.task_id).where(Attempt.outcome == AttemptOutcome.SUCCEEDED)))
+        tasks = session.scalars(select(Task).where(Task.state == TaskState.SUCCEEDED)).all()
     expected = {task.id: 0 if task.reused else 1 for task in tasks}
     return [f"{task.inspection_id} {task.key}" for task in tasks if accepted[task.id] != expected[task.id]]
 

@@ -10,12 +10,14 @@ from typing import Any, TypeVar
 
 import httpx
 
+from core.states import InspectionState
+
 T = TypeVar("T")
 _PATIENCE_S = 120.0
 _PAUSE_S = 0.3
 _CHUNK = 16 << 10
 _TUS = {"Tus-Resumable": "1.0.0"}
-OVER = ("succeeded", "partial", "failed", "cancelled")
+OVER = (InspectionState.SUCCEEDED, InspectionState.PARTIAL, InspectionState.FAILED, InspectionState.CANCELLED)
 
 
 class SoakClient:

@@ -11,6 +11,7 @@ from pathlib import Path
 from bench.soak.clip import cut
 from bench.soak.run import Outcome, SoakSettings, disturbed, undisturbed
 from core.errors import StageFailed
+from core.states import InspectionState
 
 _DEFAULTS = SoakSettings(Path("samples/turbine.mp4"), Path("samples/turbine.json"))
 
@@ -71,7 +72,8 @@ def table(settings: SoakSettings, reference: Outcome, found: Outcome) -> str:
 
 
 def _succeeded(outcome: Outcome) -> str:
-    return f"{sum(state == 'succeeded' for state in outcome.states.values())} of {len(outcome.states)}"
+    succeeded = sum(state == InspectionState.SUCCEEDED for state in outcome.states.values())
+    return f"{succeeded} of {len(outcome.states)}"
 
 
 def _counts(counts: dict[str, int]) -> str:

@@ -21,6 +21,7 @@ from bench.soak.compare import differences
 from bench.soak.faults import Duplicates, Faults
 from bench.soak.fleet import Fleet
 from bench.soak.servers import PostgresServer, RedisServer
+from core.states import InspectionState
 from store.db import Database
 
 _TRANSFERS = 2
@@ -170,7 +171,7 @@ def _job(
         f"{_name(job)}: {path} was damaged on its way"
         for path in client.download(inspection_id, folder / "files" / _name(job))
     ]
-    if found["state"] != "succeeded":
+    if found["state"] != InspectionState.SUCCEEDED:
         wrong.append(f"{_name(job)}: {found['state']} {found['error']}")
     return str(found["state"]), wrong
 

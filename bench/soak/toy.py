@@ -10,6 +10,7 @@ from typing import Any
 from core.graph import StageSpec, TaskSpec
 from core.settings import Settings
 from core.stage import Facts, StageResult, StageTask
+from core.task_key import chunk_key
 from store.graph import Graph
 
 _PARTS = 4
@@ -20,7 +21,7 @@ def _expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
     tasks = [TaskSpec("split")]
     if "split" not in facts:
         return tasks
-    parts = [TaskSpec(f"part/{i:03d}", ("split",), {"i": i}, optional=True) for i in range(facts["split"]["n"])]
+    parts = [TaskSpec(chunk_key("part", i), ("split",), {"i": i}, optional=True) for i in range(facts["split"]["n"])]
     keys = tuple(part.key for part in parts)
     return [*tasks, *parts, TaskSpec("join", ("split", *keys)), TaskSpec("confirm", ("join",))]
 

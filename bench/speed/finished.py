@@ -13,6 +13,7 @@ from core.errors import BadInput
 from core.features.io import FrameFeatures, read_features
 from core.settings import Settings
 from core.stage import Facts
+from core.task_key import stage_of
 from store.db import open_sqlite
 from store.graph import CORE_GRAPH
 from store.inspections import Inspections
@@ -48,7 +49,7 @@ class FinishedRun:
         """Features of one frame."""
         for key, folder in self.folders.items():
             path = folder / f"{frame:04d}.npz"
-            if key.startswith("features/") and path.exists():
+            if stage_of(key) == "features" and path.exists():
                 return read_features(path)
         raise BadInput(f"the run in '{self.out}' has no features of frame {frame}", where="RESULT")
 

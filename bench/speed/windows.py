@@ -14,6 +14,7 @@ from bench.speed.timing import Row, Table
 from core.errors import StageFailed
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
+from core.task_key import key_of
 from core.windows import Window, coarse_windows
 
 CAP_S = 1200.0
@@ -45,7 +46,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int, cap_s: float = CAP_S
     colmap = make_settings("thesis").mapper
     rows, totals = [], {"ours": 0.0, "colmap": 0.0}
     for window in choose_windows(n_search, run):
-        start = run.folders.get(f"coarse/{window.warm_from}") if window.warm_from else None
+        start = run.folders.get(key_of("coarse", part=window.warm_from)) if window.warm_from else None
         ours, theirs = [], []
         for _ in range(repeat):
             ours.append(_timed(run, window, run.settings.mapper, start, threads, cap_s))

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-ACTIVE = ("queued", "running", "cancelling")
+from core.states import InspectionState
+
+ACTIVE = (InspectionState.QUEUED, InspectionState.RUNNING, InspectionState.CANCELLING)
 """States that may still change by themselves."""
 
 

@@ -14,7 +14,7 @@ from core.annotations.checks import shown
 from core.annotations.clocks import CLOCKS, FROM_ZERO, MEANINGS, Clock, clock_named, possible_clocks
 from core.annotations.reading import Reading, read
 from core.errors import BadInput
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.video.table import FrameTable
 
 MAX_STRAYS = 0.02
@@ -94,7 +94,7 @@ def fit_convention(keys: Mapping[str, Fraction], table: FrameTable, forced: str 
     frames = [frame for frame in displayed.frames.values() if frame is not None]
     if len(frames) - len(displayed.hit) > MAX_SHARED * len(frames):
         raise _unclear(best, len(keys), len(frames) - len(displayed.hit))
-    flag = Flag("annotation_times_inexact", "warning", float(best.max_miss), 0.0, f"{len(best.strays)} keys")
+    flag = Flag("annotation_times_inexact", Severity.WARNING, float(best.max_miss), 0.0, f"{len(best.strays)} keys")
     return _fitted(displayed, table, flags=(flag,))
 
 
@@ -138,14 +138,15 @@ def _flags(best: Reading, others: Sequence[Reading], doubtful: bool) -> tuple[Fl
     flags = []
     if best.strays:
         where = f"first key {shown(best.strays[0])}"
-        flags.append(Flag("annotation_times_inexact", "info", float(len(best.strays)), 0.0, where))
+        flags.append(Flag("annotation_times_inexact", Severity.INFO, float(len(best.strays)), 0.0, where))
     if best.blurred:
         where = f"too few decimals to tell frames apart; first key {shown(best.blurred[0])}"
-        flags.append(Flag("annotation_times_inexact", "warning", float(len(best.blurred)), 0.0, where))
+        flags.append(Flag("annotation_times_inexact", Severity.WARNING, float(len(best.blurred)), 0.0, where))
     if others:
         names = ", or ".join(f"{one.clock} ({MEANINGS[one.clock]})" for one in (best, *others))
         where = f"{names}; input.time_convention says which"
-        flags.append(Flag("annotation_times_ambiguous", "warning" if doubtful else "info", None, None, where))
+        severity = Severity.WARNING if doubtful else Severity.INFO
+        flags.append(Flag("annotation_times_ambiguous", severity, None, None, where))
     return tuple(flags)
 
 

@@ -13,7 +13,7 @@ from core.annotations.clocks import Clock, ruler_of
 from core.annotations.convention import Fitted, fit_convention
 from core.annotations.model import Annotations, Mask, Polygon
 from core.errors import BadInput
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.geometry.boxes import Box
 from core.video.table import FrameTable
 
@@ -79,7 +79,7 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
     flags = fitted.flags
     if outside:
         where = f"first key {shown(outside[0])}"
-        flags = (*flags, Flag("annotations_outside_video", "warning", float(len(outside)), 0.0, where))
+        flags = (*flags, Flag("annotations_outside_video", Severity.WARNING, float(len(outside)), 0.0, where))
     return PlacedAnnotations(
         detections=tuple(
             PlacedDetection(

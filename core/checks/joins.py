@@ -85,6 +85,6 @@ def check_joins(tracks: Tracks, frames: I64, n_search: int) -> Flag | None:
     if across[weakest] >= WEAK_POINTS:
         return None
     broken = points_across(tracks, ordered, 0.0).min() < BROKEN_POINTS
-    severity: Severity = "error" if broken else "warning"
+    severity = Severity.ERROR if broken else Severity.WARNING
     where = f"between frames {ordered[weakest]} and {ordered[weakest + 1]}"
     return Flag("weak_join", severity, float(across[weakest]), float(WEAK_POINTS), where)

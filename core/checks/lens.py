@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.geometry.fisheye import viewing_angle
 
 MIN_FOV_DEG = 15.0
@@ -22,7 +22,7 @@ def check_shift(shift: float) -> Flag | None:
     """
     if abs(shift) <= MAX_SHIFT:
         return None
-    return Flag("lens_unsettled", "warning", abs(shift), MAX_SHIFT, "relative change of the focal length")
+    return Flag("lens_unsettled", Severity.WARNING, abs(shift), MAX_SHIFT, "relative change of the focal length")
 
 
 def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Flag]:
@@ -42,12 +42,14 @@ def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Fla
     flags = []
     corner = np.hypot(max(cx, width - cx) / fx, max(cy, height - cy) / fy)
     if viewing_angle(float(corner), distortion) is None:
-        flags.append(Flag("distortion_implausible", "warning", float(np.abs(distortion).max()), None, "camera"))
+        flags.append(Flag("distortion_implausible", Severity.WARNING, float(np.abs(distortion).max()), None, "camera"))
     sides = [viewing_angle(float(side / fx), distortion) for side in (cx, width - cx)]
     # Where the polynomial folds, its linear part still tells the field of view.
     found = [side / fx if angle is None else angle for side, angle in zip((cx, width - cx), sides, strict=True)]
     fov = float(np.degrees(sum(found)))
     if fov < MIN_FOV_DEG or fov > MAX_FOV_DEG:
         threshold = MIN_FOV_DEG if fov < MIN_FOV_DEG else MAX_FOV_DEG
-        flags.append(Flag("focal_implausible", "warning", fov, threshold, "field of view across the crop, degrees"))
+        flags.append(
+            Flag("focal_implausible", Severity.WARNING, fov, threshold, "field of view across the crop, degrees")
+        )
     return flags

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.geometry.pose import pose_of
 
 F64 = NDArray[np.float64]
@@ -70,13 +70,13 @@ def check_matches(agreement: Agreement) -> list[Flag]:
         return []
     typical = float(np.median(shares))
     if typical < MIN_MEDIAN_SHARE:
-        return [Flag("not_static", "error", typical, MIN_MEDIAN_SHARE, f"{len(shares)} pairs")]
+        return [Flag("not_static", Severity.ERROR, typical, MIN_MEDIAN_SHARE, f"{len(shares)} pairs")]
     moved = shares < MOVED_SHARE
     if moved.mean() <= MAX_MOVED_PAIRS:
         return []
     frames = agreement.pairs[moved]
     where = f"{int(moved.sum())} pairs of frames {frames.min()}-{frames.max()}"
-    return [Flag("two_motions", "error", float(moved.mean()), MAX_MOVED_PAIRS, where)]
+    return [Flag("two_motions", Severity.ERROR, float(moved.mean()), MAX_MOVED_PAIRS, where)]
 
 
 class _View:

@@ -15,7 +15,7 @@ from core.checks.matches import check_matches, match_agreement
 from core.checks.parallax import check_planar, largest_angle_deg, model_parallax
 from core.checks.rotations import check_rotations, disagreement, measured_rotations
 from core.checks.stats import ModelStats, model_stats
-from core.flags import Flag, worst
+from core.flags import Flag, Severity, worst
 from core.viewgraph import PairTable
 
 SAMPLED_POINTS = 2000
@@ -54,7 +54,7 @@ def check_model(
 
 def is_wrong(model: Any, table: PairTable, n_frames: int, n_search: int | None = None) -> bool:
     """Whether `check_model` vetoes a model: the one rule by which a model is not gone on with."""
-    return worst(check_model(model, model_stats(model), vars(table), n_frames, n_search)) == "error"
+    return worst(check_model(model, model_stats(model), vars(table), n_frames, n_search)) == Severity.ERROR
 
 
 def point_angles_deg(model: Any, count: int = SAMPLED_POINTS) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 
 MAX_STILL_SHARE = 0.5
 """More cases than this that end without parallax speak for the whole clip."""
@@ -38,7 +38,7 @@ def cases_parallax(rows: Sequence[Mapping[str, Any]]) -> Flag | None:
     still = sum(row["reason"] == "no_parallax" for row in rows)
     if not rows or any(row["status"] == "succeeded" for row in rows) or still <= MAX_STILL_SHARE * len(rows):
         return None
-    return Flag("no_parallax", "error", still / len(rows), MAX_STILL_SHARE, f"{still} of {len(rows)} cases")
+    return Flag("no_parallax", Severity.ERROR, still / len(rows), MAX_STILL_SHARE, f"{still} of {len(rows)} cases")
 
 
 def model_parallax(angles_deg: NDArray[np.float64]) -> Flag | None:
@@ -48,7 +48,7 @@ def model_parallax(angles_deg: NDArray[np.float64]) -> Flag | None:
     median = float(np.median(angles_deg))
     if median >= MIN_MODEL_ANGLE_DEG:
         return None
-    return Flag("no_parallax", "error", median, MIN_MODEL_ANGLE_DEG, f"{len(angles_deg)} points")
+    return Flag("no_parallax", Severity.ERROR, median, MIN_MODEL_ANGLE_DEG, f"{len(angles_deg)} points")
 
 
 def check_planar(graph: Mapping[str, NDArray[Any]], frames: NDArray[np.int64]) -> Flag | None:
@@ -67,7 +67,7 @@ def check_planar(graph: Mapping[str, NDArray[Any]], frames: NDArray[np.int64]) -
     share = float(np.isin(graph["config"][inside], DEGENERATE_CONFIGS).mean())
     if share <= MAX_PLANAR_SHARE:
         return None
-    return Flag("planar_start", "warning", share, MAX_PLANAR_SHARE, f"{int(inside.sum())} pairs")
+    return Flag("planar_start", Severity.WARNING, share, MAX_PLANAR_SHARE, f"{int(inside.sum())} pairs")
 
 
 def largest_angle_deg(point: NDArray[np.float64], centers: NDArray[np.float64]) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -109,10 +109,10 @@ def check_rotations(found: Disagreement) -> Flag | None:
     """`bent_model` when all pairs together, or those across any one cut, disagree too much."""
     if len(found.pairs) and found.median_deg > MAX_MEDIAN_DEG:
         where = f"{len(found.pairs)} pairs of frames {found.pairs.min()}-{found.pairs.max()}"
-        return Flag("bent_model", "error", found.median_deg, MAX_MEDIAN_DEG, where)
+        return Flag("bent_model", Severity.ERROR, found.median_deg, MAX_MEDIAN_DEG, where)
     cut = worst_cut(found)
     if cut is not None and cut.median_deg > MAX_CUT_DEG:
         return Flag(
-            "bent_model", "error", cut.median_deg, MAX_CUT_DEG, f"between frames {cut.frame} and {cut.frame + 1}"
+            "bent_model", Severity.ERROR, cut.median_deg, MAX_CUT_DEG, f"between frames {cut.frame} and {cut.frame + 1}"
         )
     return None

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Literal
 
 from core.errors import BadInput
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.settings.groups import FrameSettings
 from core.video.table import FrameTable
 
@@ -69,7 +69,9 @@ def clip_interval(table: FrameTable, settings: FrameSettings, overrides: Collect
     end = end_s if end is None else end
     flags: tuple[Flag, ...] = ()
     if len(given) < 2 and (end > end_s or start >= end_s or (given and start >= end)):
-        flags = (Flag("interval_clipped", "warning", float(end), float(end_s), f"{float(start):g}-{float(end):g} s"),)
+        flags = (
+            Flag("interval_clipped", Severity.WARNING, float(end), float(end_s), f"{float(start):g}-{float(end):g} s"),
+        )
         end = min(end, end_s)
         if end - start < MIN_CLIPPED_S:
             start = start if "clip_start_s" in given else Fraction(0)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.gallery.palette import RGB
-from core.mapping.rows import DetectionRow
+from core.mapping.rows import DetectionRow, Outcome
 
 U8 = NDArray[np.uint8]
 Plate = tuple[int, int, int, int]
@@ -94,7 +94,7 @@ def draw_boxes(rgb: U8, rows: Sequence[DetectionRow], colors: Mapping[str, RGB])
         left, top = int(row.box_x1 * width), int(row.box_y1 * height)
         right, bottom = int(row.box_x2 * width), int(row.box_y2 * height)
         color = colors[row.label]
-        if row.outcome == "mapped":
+        if row.outcome == Outcome.MAPPED:
             cv2.rectangle(picture, (left, top), (right, bottom), color, thickness, cv2.LINE_AA)
         else:
             _dashed_rectangle(picture, (left, top, right, bottom), color, max(1, thickness - 1))

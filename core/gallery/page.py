@@ -16,9 +16,7 @@ from core.gallery.boxes import FrameBoxes, frame_file
 from core.gallery.defects import DefectLine
 from core.gallery.evidence import Evidence
 from core.gallery.palette import RGB
-from core.mapping.rows import REASONS, DetectionRow
-
-OUTCOMES = ("mapped", "approximate", "unplaced")
+from core.mapping.rows import REASONS, DetectionRow, Outcome
 
 
 def _e(value: object) -> str:
@@ -49,7 +47,7 @@ def gallery_page(
         colors: by label, as drawn in the pictures.
         evidence: of the defects, each with a picture beside the page.
     """
-    mapped = sum(row.outcome == "mapped" for row in rows)
+    mapped = sum(row.outcome == Outcome.MAPPED for row in rows)
     lead = f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {len(defects)} defects"
     return "\n".join(
         [
@@ -156,7 +154,7 @@ def _gallery(
 
 def _filters(rows: Sequence[DetectionRow]) -> str:
     defects = sorted({row.defect_id for row in rows if row.defect_id is not None})
-    present = [outcome for outcome in OUTCOMES if any(row.outcome == outcome for row in rows)]
+    present = [outcome for outcome in Outcome if any(row.outcome == outcome for row in rows)]
     fields = (
         ("label", "Label", [(label, label) for label in sorted({row.label for row in rows})]),
         ("outcome", "Outcome", [(outcome, outcome) for outcome in present]),

@@ -5,9 +5,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from enum import StrEnum
+from typing import Any
 
-Outcome = Literal["mapped", "approximate", "unplaced"]
+
+class Outcome(StrEnum):
+    """What became of a detection."""
+
+    MAPPED = "mapped"
+    APPROXIMATE = "approximate"
+    """Its place is an estimate."""
+    UNPLACED = "unplaced"
+
 
 REASONS: Mapping[str, str] = {
     "no_frame": "the time of the detection lies outside the video",
@@ -124,7 +133,7 @@ def mapped_row(
     return _row(
         detection,
         frame_index=frame_index,
-        outcome="mapped",
+        outcome=Outcome.MAPPED,
         rung=rung,
         support_points=support_points,
         **{"x": x, "y": y, "z": z},
@@ -142,7 +151,7 @@ def approximate_row(
     return _row(
         detection,
         frame_index=frame_index,
-        outcome="approximate",
+        outcome=Outcome.APPROXIMATE,
         reason=reason,
         rung=rung,
         **{"x": x, "y": y, "z": z},
@@ -154,7 +163,7 @@ def unplaced_row(detection: Detection, reason: str, frame_index: int | None = No
     """Row of a detection without a place; `reason` is a key of `REASONS`."""
     if reason not in REASONS:
         raise ValueError(f"unknown reason {reason!r}")
-    return _row(detection, outcome="unplaced", reason=reason, frame_index=frame_index)
+    return _row(detection, outcome=Outcome.UNPLACED, reason=reason, frame_index=frame_index)
 
 
 def rows_without_model(

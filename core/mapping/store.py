@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from core.json_files import read_json, write_json
 from core.mapping.confidence import Parts
-from core.mapping.rows import DetectionRow
+from core.mapping.rows import DetectionRow, Outcome
 from core.mapping.surface_rules import Observation
 
 F64 = NDArray[np.float64]
@@ -88,5 +88,5 @@ def parts_rows(observations: Sequence[Observation]) -> list[dict[str, Any]]:
             "parts": None if one.parts is None else one.parts.to_dict(),
         }
         for one in observations
-        if one.row.outcome != "unplaced"
+        if one.row.outcome != Outcome.UNPLACED
     ]

@@ -21,7 +21,7 @@ from core.mapping.ladder import (
     from_sparse_points,
 )
 from core.mapping.pixels import Footprint, footprint
-from core.mapping.rows import Detection, DetectionRow, approximate_row, mapped_row, unplaced_row
+from core.mapping.rows import Detection, DetectionRow, Outcome, approximate_row, mapped_row, unplaced_row
 from core.mapping.scene import Scene
 from core.mapping.support import box_in_crop_px
 
@@ -135,7 +135,7 @@ def _registered(detections: Sequence[Detection], scene: Scene, sights: Mapping[i
 def _cast_observation(detection: Detection, frame: int, cast: Cast, scene: Scene) -> Observation:
     row = mapped_row(detection, frame, cast.place.tolist(), len(cast.point_ids), "surface", scene.model)
     if cast.contradicted:
-        row = replace(row, outcome="approximate", reason="contradicted")
+        row = replace(row, outcome=Outcome.APPROXIMATE, reason="contradicted")
     return Observation(
         row,
         cast.patch.points,

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from core.flags import Verdict
 from core.json_files import write_json
 from core.mapping.rows import DETECTION_COLUMNS
-from core.report.quality import Verdict, build_quality, collect_flags, verdict_of
+from core.report.quality import build_quality, collect_flags, verdict_of
 from core.report.record import RunRecord
 from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
 from core.report.summary import build_summary
@@ -40,7 +41,7 @@ def build_report(record: RunRecord) -> Report:
     """
     flags = collect_flags(record)
     verdict = verdict_of(record, flags)
-    refused = verdict == "refused"
+    refused = verdict == Verdict.REFUSED
     cases = case_rows(record)
     detections = detection_rows(record, refused)
     timeline = [] if refused else list(record.tables.timeline)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from core.mapping.rows import REASONS
+from core.mapping.rows import REASONS, Outcome
 
 Row = Mapping[str, Any]
 
@@ -30,9 +30,9 @@ def funnel(rows: Sequence[Row], n_defects: int, method: str) -> dict[str, Any]:
         "registered": registered,
         "surface_hit": hit if casts_rays else None,
         "verified": verified if casts_rays else None,
-        "mapped": sum(row["outcome"] == "mapped" for row in rows),
-        "approximate": sum(row["outcome"] == "approximate" for row in rows),
-        "unconfirmed": sum(row["outcome"] == "mapped" and row["defect_id"] is None for row in rows),
+        "mapped": sum(row["outcome"] == Outcome.MAPPED for row in rows),
+        "approximate": sum(row["outcome"] == Outcome.APPROXIMATE for row in rows),
+        "unconfirmed": sum(row["outcome"] == Outcome.MAPPED and row["defect_id"] is None for row in rows),
         "defects": n_defects,
     }
 
@@ -48,7 +48,7 @@ def losses(rows: Sequence[Row]) -> list[dict[str, Any]]:
 
 def support_counts(rows: Sequence[Row], unique_points: int | None) -> dict[str, Any]:
     """Sparse support points per mapped detection: minimum, mean, maximum; null without a mapped detection."""
-    counts = [int(row["support_points"]) for row in rows if row["outcome"] == "mapped"]
+    counts = [int(row["support_points"]) for row in rows if row["outcome"] == Outcome.MAPPED]
     return {
         "min": min(counts, default=None),
         "mean": round(sum(counts) / len(counts), 2) if counts else None,

@@ -9,7 +9,7 @@ from typing import Any
 from core.json_files import read_json
 from core.report.models import join_detections, join_lists
 from core.report.record import RunTables
-from core.stage import key_of, piece_of, stage_of
+from core.task_key import key_of, piece_of, stage_of
 
 
 def served_pieces(keys: Collection[str]) -> list[int]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from core.mapping.rows import Outcome
+
 Row = Mapping[str, Any]
 
-_RANK = {"mapped": 0, "approximate": 1}
+_RANK: dict[str, int] = {Outcome.MAPPED: 0, Outcome.APPROXIMATE: 1}
 """Outcomes in the order in which a model's row counts; all others are behind."""
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any
 
 from core.checks.parallax import cases_parallax
-from core.flags import Flag, error_codes
+from core.flags import Flag, Severity, Verdict, error_codes
 from core.report.funnel import funnel, losses, support_counts
 from core.report.missing import missing_parts
 from core.report.record import RunRecord, TaskRecord
@@ -14,12 +14,11 @@ from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
 from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
-from core.stage import key_of, piece_of
+from core.task_key import key_of, part_of, piece_of
 
 Row = Mapping[str, Any]
-Verdict = Literal["ok", "suspect", "refused"]
 
-_SEVERITY_RANK = {"error": 0, "warning": 1, "info": 2}
+_SEVERITY_RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
 
 def collect_flags(record: RunRecord) -> list[Flag]:
@@ -42,7 +41,7 @@ def collect_flags(record: RunRecord) -> list[Flag]:
 def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[Row]:
     """Of the cases, the checks of the chosen one speak for the run, and only where no final model was made of it."""
     is_case = task.stage in ("coarse", "refine")
-    if is_case and (record.facts("extend") or task.key.split("/", 1)[1] != selected_case(record)):
+    if is_case and (record.facts("extend") or part_of(task.key) != selected_case(record)):
         return ()
     checks: Sequence[Row] = task.facts.get("checks", ())
     return checks
@@ -52,24 +51,24 @@ def _settings_flags(record: RunRecord) -> list[Flag]:
     """The two coordinate mistakes that the preset `thesis` keeps."""
     flags = []
     if record.settings.mapping.box_frame == "crop":
-        flags.append(Flag("boxes_in_crop_frame", "warning", where="mapping.box_frame"))
+        flags.append(Flag("boxes_in_crop_frame", Severity.WARNING, where="mapping.box_frame"))
     if record.settings.camera.principal_point == "crop":
-        flags.append(Flag("principal_point_at_crop_centre", "warning", where="camera.principal_point"))
+        flags.append(Flag("principal_point_at_crop_centre", Severity.WARNING, where="camera.principal_point"))
     return flags
 
 
 def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
     """`refused` without a model to trust, `suspect` with any warning or error, else `ok`."""
     if record.reason == "no_reconstruction" or not record.facts("extend"):
-        return "refused"
-    return "suspect" if any(flag.severity != "info" for flag in flags) else "ok"
+        return Verdict.REFUSED
+    return Verdict.SUSPECT if any(flag.severity != Severity.INFO for flag in flags) else Verdict.OK
 
 
 def build_quality(
     record: RunRecord, verdict: Verdict, flags: Sequence[Flag], cases: Sequence[Row], detections: Sequence[Row]
 ) -> dict[str, Any]:
     """The object of quality.json. Unknown = null; nothing is guessed."""
-    defects = [] if verdict == "refused" else record.tables.defects
+    defects = [] if verdict == Verdict.REFUSED else record.tables.defects
     steps = funnel(detections, len(defects), record.settings.mapping.method)
     support = support_counts(detections, record.facts("map_defects").get("unique_support_points"))
     return {
@@ -178,7 +177,7 @@ def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
     ranked = record.facts("reduce_refine").get("ranking", ())
     verified = {row["name"]: row.get("verified_detections") for row in ranked}
     winner = next((row["name"] for row in cases if row["selected"]), None)
-    checks = {task.key.split("/", 1)[1]: task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
+    checks = {part_of(task.key): task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
     order = sorted(
         (row for row in cases if not row["selected"]),
         key=lambda row: (

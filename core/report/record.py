@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 from core.settings import Settings
-from core.stage import Facts, stage_of
-
-RunState = Literal["succeeded", "partial", "failed", "cancelled", "interrupted"]
-TaskState = Literal["succeeded", "failed", "skipped", "cancelled", "waiting"]
+from core.stage import Facts
+from core.states import RunState, TaskState
+from core.task_key import stage_of
 
 
 @dataclass(frozen=True)
@@ -20,6 +19,7 @@ class TaskRecord:
     key: str
     """Name in the plan, e.g. ``coarse/seg_000_0000_0180``."""
     state: TaskState
+    """`WAITING` stands for every state in which it has not ended."""
     reason: str = ""
     """Code of the error that ended it; empty when it succeeded."""
     message: str = ""
@@ -77,7 +77,7 @@ class RunRecord:
     def facts(self, key: str) -> Facts:
         """Facts of a finished task; empty when it did not succeed or is not in the plan."""
         for task in self.tasks:
-            if task.key == key and task.state == "succeeded":
+            if task.key == key and task.state == TaskState.SUCCEEDED:
                 return task.facts
         return {}
 

@@ -6,6 +6,8 @@ from typing import Any
 
 from core.mapping.rows import Detection, rows_without_model
 from core.report.record import RunRecord, TaskRecord
+from core.states import TaskState
+from core.task_key import part_of
 
 Row = dict[str, Any]
 
@@ -55,16 +57,18 @@ def selected_case(record: RunRecord) -> str:
 def case_rows(record: RunRecord) -> list[Row]:
     """Rows of cases.csv for all cases that ended, coarse before refined, by name."""
     chosen = selected_case(record)
-    ended = [task for task in record.of_stage("coarse", "refine") if task.state in ("succeeded", "failed")]
+    ended = [
+        task for task in record.of_stage("coarse", "refine") if task.state in (TaskState.SUCCEEDED, TaskState.FAILED)
+    ]
     return [_case_row(task, chosen) for task in sorted(ended, key=lambda task: task.key)]
 
 
 def _case_row(task: TaskRecord, chosen: str) -> Row:
-    kind, name = task.key.split("/", 1)
+    kind, name = task.stage, part_of(task.key)
     start, end = (int(part) for part in name.split("_")[-2:])
     row: Row = dict.fromkeys(CASE_COLUMNS)
     row.update({"name": name, "kind": kind, "start": start, "end": end, "frames": end - start})
-    if task.state == "failed":
+    if task.state == TaskState.FAILED:
         row.update({"status": "failed", "reason": task.reason or "stage_failed", "models": 0})
         row.update({"registered_images": 0, "points3D": 0})
     else:

@@ -6,16 +6,19 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.fingerprint import digest_of
+from core.flags import Verdict
 from core.graph import STAGES
+from core.mapping.rows import Outcome
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
+from core.states import StageState, TaskState
 
 Row = Mapping[str, Any]
 
 
 def build_summary(
-    record: RunRecord, verdict: str, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
+    record: RunRecord, verdict: Verdict, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
 ) -> dict[str, Any]:
     """The object of summary.json."""
     parameters = record.settings.model_dump(mode="json")
@@ -81,18 +84,18 @@ def _stages(tasks: Sequence[TaskRecord]) -> list[dict[str, Any]]:
     return rows
 
 
-def stage_state(states: Sequence[str]) -> str:
+def stage_state(states: Sequence[TaskState]) -> StageState:
     """State of a stage from those of its tasks.
 
     A stage that fans out succeeds with any succeeded task once all have ended; without tasks it is waiting.
     """
-    if not states or "waiting" in states:
-        return "waiting"
-    if "cancelled" in states:
-        return "cancelled"
-    if "succeeded" in states:
-        return "succeeded"
-    return "failed" if "failed" in states else "skipped"
+    if not states or TaskState.WAITING in states:
+        return StageState.WAITING
+    if TaskState.CANCELLED in states:
+        return StageState.CANCELLED
+    if TaskState.SUCCEEDED in states:
+        return StageState.SUCCEEDED
+    return StageState.FAILED if TaskState.FAILED in states else StageState.SKIPPED
 
 
 def _headline(
@@ -110,7 +113,7 @@ def _headline(
         "mesh_vertices": mesh.get("n_vertices"),
         "mesh_faces": mesh.get("n_faces"),
         "detections": len(detections),
-        "mapped": sum(row["outcome"] == "mapped" for row in detections),
+        "mapped": sum(row["outcome"] == Outcome.MAPPED for row in detections),
         "events": len(timeline),
         "defects": len(defects),
     }

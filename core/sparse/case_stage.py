@@ -8,9 +8,10 @@ import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writin
 import pycolmap
 
 from core.checks.model import check_model
-from core.flags import Flag, worst
+from core.flags import Flag, Severity, worst
 from core.sparse.cases import Case, CaseResult, run_case
 from core.stage import StageResult, StageTask
+from core.task_key import key_of
 from core.viewgraph import read_table
 
 
@@ -39,7 +40,7 @@ def run_case_task(task: StageTask, kind: str) -> StageResult:
 def _start_model(task: StageTask) -> Any | None:
     """The model named by the plan; None without one, or when that case failed or has no model."""
     name = task.args.get("warm_from")
-    folder = task.inputs.get(f"coarse/{name}") if name else None
+    folder = task.inputs.get(key_of("coarse", part=str(name))) if name else None
     if folder is None or not (folder / "model").is_dir():
         return None
     return pycolmap.Reconstruction(folder / "model")
@@ -55,7 +56,7 @@ def case_checks(result: CaseResult, case: Case) -> list[Flag]:
 
 def trust_facts(flags: list[Flag]) -> dict[str, Any]:
     """Facts `checks` and `vetoed`: a finding of severity `error` vetoes a case."""
-    return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == "error")}
+    return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == Severity.ERROR)}
 
 
 def _row(task: StageTask, kind: str, result: CaseResult) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pycolmap
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.settings.groups import CameraSettings
 
 MODEL = "OPENCV_FISHEYE"
@@ -121,7 +121,7 @@ def _doubts(agreement: float | None) -> list[dict[str, Any]]:
     if share >= MIN_AGREEMENT:
         return []
     where = "share of the starts that agree on the focal length"
-    return [Flag("focal_uncertain", "warning", share, MIN_AGREEMENT, where).to_dict()]
+    return [Flag("focal_uncertain", Severity.WARNING, share, MIN_AGREEMENT, where).to_dict()]
 
 
 def _agreement(starts: Sequence[Mapping[str, Any]], focal: float) -> float:

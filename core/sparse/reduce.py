@@ -12,6 +12,7 @@ from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
 from core.flags import error_codes
+from core.task_key import parts_of
 
 Row = Mapping[str, Any]
 
@@ -71,7 +72,7 @@ def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) 
 
 def case_rows(facts: Mapping[str, Mapping[str, Any]], stage: str) -> list[Row]:
     """Rows of the cases of `stage` among a task's facts, ordered by key."""
-    return [facts[key] for key in sorted(facts) if key.startswith(stage + "/")]
+    return [facts[key] for key in parts_of(facts, stage)]
 
 
 def find_row(rows: Sequence[Row], name: str) -> Row:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from core.features.io import feature_files, read_features
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
@@ -72,11 +72,13 @@ def _matched(task: StageTask, pairs: list[Pair]) -> PairTable:
 
 
 def _jump_flags(jumps: list[int]) -> list[Flag]:
-    return [Flag("picture_jumps", "warning", where=f"between frames {cut} and {cut + 1}") for cut in jumps]
+    return [Flag("picture_jumps", Severity.WARNING, where=f"between frames {cut} and {cut + 1}") for cut in jumps]
 
 
 def _gap_flags(spanned: list[tuple[int, int]]) -> list[Flag]:
-    return [Flag("gap_spanned", "info", where=f"between frames {before} and {after}") for before, after in spanned]
+    return [
+        Flag("gap_spanned", Severity.INFO, where=f"between frames {before} and {after}") for before, after in spanned
+    ]
 
 
 def _spanned(gaps: list[tuple[int, int]], pairs: list[list[int]]) -> list[tuple[int, int]]:

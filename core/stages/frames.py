@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from core.annotations.placed import load_detections
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.frames.export import export_frames, image_name
 from core.frames.sampling import choose_frames, clip_interval
 from core.roi import crop_of
@@ -56,7 +56,7 @@ def run(task: StageTask) -> StageResult:
     still = find_still([images / image_name(frame.index) for frame in shown])
     flags = list(interval.flags)
     if settings.frames.mask_still and still.share:
-        flags.append(Flag("still_pixels_masked", "info", still.share, 0.0, f"{still.frames} frames compared"))
+        flags.append(Flag("still_pixels_masked", Severity.INFO, still.share, 0.0, f"{still.frames} frames compared"))
     write_mask(task.out / "still.png", still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
     (task.out / "frames.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     (task.out / "crop.json").write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")

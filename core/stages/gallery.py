@@ -18,8 +18,9 @@ from core.json_files import read_json
 from core.mapping.rows import DetectionRow
 from core.render import Renderer
 from core.report.models import join_detections, join_lists
-from core.stage import StageResult, StageTask, stage_of
+from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
+from core.task_key import stage_of
 from core.video.decode import VideoReader
 from core.video.table import FrameTable
 from core.viewpoint import choose_two

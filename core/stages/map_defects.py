@@ -11,7 +11,7 @@ from core.json_files import read_json, write_json
 from core.mapping.coloring import coloring_radius, vertex_weights
 from core.mapping.depth_witness import no_depth_maps
 from core.mapping.load import matches_of_graph, open_depth_maps, open_mapping_scene
-from core.mapping.rows import Detection, outcome_counts
+from core.mapping.rows import Detection, Outcome, outcome_counts
 from core.mapping.scene import Scene
 from core.mapping.store import write_observations
 from core.mapping.support import SparseModel, boxes_by_frame, read_sparse_model
@@ -145,7 +145,7 @@ def _concatenate(parts: Sequence[NDArray[np.int64]] | Sequence[NDArray[np.int32]
 
 
 def _facts(placements: Sequence[Placement] | Sequence[Observation], unique: int) -> Facts:
-    counts = [placement.row.support_points for placement in placements if placement.row.outcome == "mapped"]
+    counts = [placement.row.support_points for placement in placements if placement.row.outcome == Outcome.MAPPED]
     return {
         "n_detections": len(placements),
         **outcome_counts([placement.row for placement in placements]),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.stage import StageResult, StageTask
 from core.video.probe import probe_video
 from core.video.table import rational_text
@@ -26,15 +26,15 @@ def run(task: StageTask) -> StageResult:
     info = table.info
     flags = []
     if info.truncated:
-        flags.append(Flag("truncated_video", "warning", where="; ".join(info.damage)))
+        flags.append(Flag("truncated_video", Severity.WARNING, where="; ".join(info.damage)))
     if info.repaired_times:
-        flags.append(Flag("times_repaired", "warning", float(info.repaired_times), 0.0, "frames"))
+        flags.append(Flag("times_repaired", Severity.WARNING, float(info.repaired_times), 0.0, "frames"))
     if info.joined:
         where = f"frame {', '.join(map(str, info.joined))}"
-        flags.append(Flag("recording_joined", "info", float(len(info.joined)), 0.0, where))
+        flags.append(Flag("recording_joined", Severity.INFO, float(len(info.joined)), 0.0, where))
     if info.streams:
         where = f"stream {info.stream} of: {'; '.join(info.streams)}"
-        flags.append(Flag("video_stream_chosen", "info", float(len(info.streams)), 1.0, where))
+        flags.append(Flag("video_stream_chosen", Severity.INFO, float(len(info.streams)), 1.0, where))
     return StageResult(
         {
             "n_frames": info.n_frames,

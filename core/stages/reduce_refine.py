@@ -12,6 +12,7 @@ from core.mapping.verified import verified_detections
 from core.roi import Crop
 from core.sparse.reduce import Row, case_rows, find_row, reduce_refined
 from core.stage import StageResult, StageTask
+from core.task_key import key_of
 
 
 def run(task: StageTask) -> StageResult:
@@ -24,7 +25,7 @@ def run(task: StageTask) -> StageResult:
     if task.settings.model.prefer_verified:
         rows = _with_verified(task, rows)
     facts = reduce_refined(rows[0], rows[1:], task.settings.model.veto)
-    shutil.copytree(task.input(f"{facts['kind']}/{facts['best']}") / "model", task.out / "model")
+    shutil.copytree(task.input(key_of(str(facts["kind"]), part=str(facts["best"]))) / "model", task.out / "model")
     task.report(1, 1, f"{len(rows) - 1} refined cases ranked")
     return StageResult(facts)
 
@@ -40,6 +41,8 @@ def _with_verified(task: StageTask, rows: Sequence[Row]) -> list[Row]:
         task.report(number, len(rows), f"detections of {row['name']}")
         count = 0
         if row["status"] == "succeeded":
-            count = verified_detections(open_model(task.input(f"{row['kind']}/{row['name']}") / "model"), boxes)
+            count = verified_detections(
+                open_model(task.input(key_of(str(row["kind"]), part=str(row["name"]))) / "model"), boxes
+            )
         found.append({**row, "verified_detections": count})
     return found

@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from core.flags import Severity
 from core.json_files import read_json, write_json
 from core.mapping.coloring import blend
 from core.mapping.rows import DetectionRow
 from core.mapping.support import open_model
-from core.stage import StageResult, StageTask, key_of
+from core.stage import StageResult, StageTask
 from core.stages.map_defects import open_scene_of, world_comments
 from core.surface.glb import vertex_normals, write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
+from core.task_key import key_of
 from core.timeline.clusters import Cluster, cluster_detections, cluster_radius
 from core.timeline.events import defect_of_detection, defect_records, event_rows, with_defect_ids
 from core.timeline.numbering import Start
@@ -73,7 +75,7 @@ def _by_surface(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:
 def _doubts(task: StageTask) -> int:
     """Warnings of the checks about the model that the places lie on."""
     checks = task.facts.get(key_of("extend", task.piece), {}).get("checks", ())
-    return len({check["code"] for check in checks if check["severity"] != "info"})
+    return len({check["code"] for check in checks if check["severity"] != Severity.INFO})
 
 
 def _by_clusters(task: StageTask, mesh: Mesh) -> tuple[Mesh, dict[str, Any]]:

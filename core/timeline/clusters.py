@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from core.mapping.rows import DetectionRow
+from core.mapping.rows import DetectionRow, Outcome
 
 F64 = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def cluster_detections(rows: Sequence[DetectionRow], radius: float) -> list[Clus
     come back sorted by start time, so their positions are the renumbered ids.
     """
     growing: list[_Growing] = []
-    for row in sorted((row for row in rows if row.outcome == "mapped"), key=lambda row: (row.time_s, row.id)):
+    for row in sorted((row for row in rows if row.outcome == Outcome.MAPPED), key=lambda row: (row.time_s, row.id)):
         place = np.array((row.x, row.y, row.z), dtype=np.float64)
         chosen = _nearest(growing, place, radius)
         if chosen is None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.mapping.confidence import confidence
-from core.mapping.rows import DetectionRow
+from core.mapping.rows import DetectionRow, Outcome
 from core.mapping.scene import Scene
 from core.mapping.surface_rules import Observation
 from core.outputs import evidence_name
@@ -125,7 +125,7 @@ def _defect(
 
 def _smallest_px(observations: Sequence[Observation], crop: Crop) -> float:
     """Side of the smallest boxes that this detector drew: what a frame shows smaller is not expected of it."""
-    sides = [_side_px(one, crop) for one in observations if one.row.outcome == "mapped"]
+    sides = [_side_px(one, crop) for one in observations if one.row.outcome == Outcome.MAPPED]
     return float(np.quantile(sides, SMALLEST_SHARE)) if sides else 0.0
 
 
@@ -176,7 +176,7 @@ def _with_estimates(observations: Sequence[Observation], defects: Sequence[Defec
     places = np.array([defect.place for defect in defects]).reshape(-1, 3)
     found = []
     for one in observations:
-        if one.row.outcome == "approximate" and len(places):
+        if one.row.outcome == Outcome.APPROXIMATE and len(places):
             distance = np.linalg.norm(places - np.array((one.row.x, one.row.y, one.row.z)), axis=1)
             nearest = int(distance.argmin())
             reach = max(one.radius, max(_radius(defects[nearest], observations), one.sigma or 0.0))
@@ -260,7 +260,7 @@ def defect_records(
 
 
 def _approximate(observations: Sequence[Observation], number: int) -> list[int]:
-    return [o.row.id for o in observations if o.row.outcome == "approximate" and o.row.defect_id == number]
+    return [o.row.id for o in observations if o.row.outcome == Outcome.APPROXIMATE and o.row.defect_id == number]
 
 
 def _extent(own: Sequence[Observation]) -> dict[str, Any]:

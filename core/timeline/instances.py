@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.geometry.boxes import box_iou
+from core.mapping.rows import Outcome
 from core.mapping.surface_rules import Observation
 
 F64 = NDArray[np.float64]
@@ -52,7 +53,7 @@ def group_observations(observations: Sequence[Observation]) -> list[list[int]]:
     Args:
         observations: of one model.
     """
-    rows = [k for k, one in enumerate(observations) if one.row.outcome == "mapped" and len(one.points)]
+    rows = [k for k, one in enumerate(observations) if one.row.outcome == Outcome.MAPPED and len(one.points)]
     if not rows:
         return []
     places = np.array([(o.row.x, o.row.y, o.row.z) for o in (observations[k] for k in rows)], np.float64)

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
-from core.stage import Facts, piece_of, stage_of
+from core.stage import Facts
+from core.task_key import piece_of, stage_of
 from core.timeline.events import EventRow
 
 I32 = NDArray[np.int32]

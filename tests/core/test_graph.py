@@ -12,7 +12,8 @@ import pytest
 from core.errors import StageFailed
 from core.graph import STAGES, expand
 from core.settings import make_settings
-from core.stage import StageTask, stage_of
+from core.stage import StageTask
+from core.task_key import stage_of
 
 FRAMES = {"frames": {"n_frames": 200, "n_search": 200}}
 SEARCHED = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}

@@ -12,7 +12,7 @@ from sqlalchemy import select
 from core.outputs import TABLES
 from core.report.record import RunRecord
 from core.settings import make_settings
-from core.stage import stage_of
+from core.task_key import stage_of
 from store.db import Database, open_sqlite
 from store.inspections import Inspections
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow

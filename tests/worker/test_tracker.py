@@ -77,3 +77,10 @@ def test_refreshing_tells_what_ended_since() -> None:
     events = tracker.refresh([*PLAN[:2], failed])
     assert [(event.key, event.state, event.message) for event in events] == [("part/001", "failed", "no surface")]
     assert tracker.refresh([*PLAN[:2], failed]) == []
+
+
+def test_a_task_of_a_further_model_counts_for_its_stage() -> None:
+    tracker = Tracker(GRAPH, workers=1)
+    tracker.refresh([view("split", "succeeded", 1.0), view("join", "succeeded", 1.0)])
+    event = tracker.event("started", "join@1")
+    assert (event.stage, event.done, event.total) == ("join", 1, 1)

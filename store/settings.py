@@ -36,7 +36,10 @@ class DeploymentSettings(BaseSettings):
         "", description="where files are kept: s3://bucket/prefix or file:///shared (fsspec); empty = data folder"
     )
     artifacts_options: dict[str, Any] = Field({}, description="JSON for fsspec, e.g. endpoint_url and credentials")
-    broker_url: str = Field("", description="redis://host/0 or amqp://host; empty = runners inside the server")
+    broker_url: str = Field(
+        "",
+        description="redis://host/0 or amqp://host; empty = runners in the server, and workers ask the database",
+    )
     visibility_timeout_s: float = Field(
         21_600.0,
         gt=0,
@@ -79,7 +82,9 @@ class DeploymentSettings(BaseSettings):
     max_probes_waiting_per_owner: int = Field(50, ge=0, description="the same of one owner; more get 429")
 
     trusted_hosts: str = Field(
-        "", description="with API keys: names that the server goes by, separated by commas; others get 421; empty = any"
+        "",
+        description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
+        "421; empty = any",
     )
     graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import subprocess
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "turbine.mp4"
+_LOSSLESS = ("-c:v", "ffv1")
 SMALL = ("-vf", "scale=160:120", "-frames:v", "48")
 
 
@@ -21,8 +24,18 @@ def ffmpeg(target: Path, *words: str | Path) -> Path:
 
 
 def film(target: Path, *words: str) -> Path:
-    """48 small frames of the sample, 12 frames/s."""
-    return ffmpeg(target, "-i", SAMPLE, *SMALL, *words)
+    """48 small frames of the sample, 12 frames/s; each kind is encoded once."""
+    target.write_bytes(_encoded(target.suffix, words))
+    return target
+
+
+@cache
+def _encoded(suffix: str, words: tuple[str, ...]) -> bytes:
+    with TemporaryDirectory() as folder:
+        if words == _LOSSLESS:
+            return ffmpeg(Path(folder) / "small.mkv", "-i", SAMPLE, *SMALL, *words).read_bytes()
+        small = film(Path(folder) / "small.mkv", *_LOSSLESS)
+        return ffmpeg(Path(folder) / f"film{suffix}", "-i", small, *words).read_bytes()
 
 
 @dataclass(frozen=True)

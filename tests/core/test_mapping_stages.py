@@ -21,6 +21,7 @@ from core.settings import Settings, make_settings
 from core.stage import Facts, StageTask
 from core.stages import gallery, map_defects, timeline
 from core.surface.ply import Mesh, read_mesh, write_mesh
+from core.video.probe import probe_video
 from tests.core.making_videos import every_ms, make_video
 
 DEPTH, FOCAL, N_FRAMES, STEP = 4.0, 100.0, 8, 0.1
@@ -100,8 +101,8 @@ def sparse_model(folder: Path) -> None:
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("inputs")
-    make_video(root / "video.mp4", every_ms(80, N_FRAMES))
-    write(root / "probe" / "video.json", {"average_rate": "25/2"})
+    (root / "probe").mkdir()
+    probe_video(make_video(root / "video.mp4", every_ms(80, N_FRAMES))).write(root / "probe")
     frames = [
         {"index": i, "source_index": i, "pts": i, "time_s": 0.08 * i, "sha256": "", "role": "both"}
         for i in range(N_FRAMES)

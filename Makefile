@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint docs check test bench-speed bench-accuracy bench-scenes bench-service soak mutate lock clean
+.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-service soak mutate lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -31,7 +31,10 @@ check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
 	$(BIN)/pytest -m "not sample and not deployment"
 
 test: lint docs ## everything, with whole deployments and the runs on the sample
-	$(BIN)/pytest
+	$(BIN)/pytest -m "not long"
+
+test-long: setup ## the walk-through on real jobs and the kill test on the sample (a quarter of an hour)
+	$(BIN)/pytest -m long
 
 bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs
 	$(BIN)/bladeatlas-bench speed $(RESULT)

@@ -296,6 +296,7 @@ def lines_until(process: subprocess.Popen[str], **wanted: str) -> Iterator[dict[
     raise AssertionError(f"the run ended before {wanted}: {process.stderr.read() if process.stderr else ''}")
 
 
+@pytest.mark.long
 def test_interrupted_and_killed_runs_go_on_to_the_same_result(finished: tuple[Path, Ended], tmp_path: Path) -> None:
     out = tmp_path / "out"
     process = start(out)

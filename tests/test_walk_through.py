@@ -23,7 +23,7 @@ from core.surface.ply import read_mesh
 from tests.conftest import service_url
 from tests.databases import database_url
 
-pytestmark = pytest.mark.sample
+pytestmark = [pytest.mark.sample, pytest.mark.long]
 
 ROOT = Path(__file__).parents[1]
 START_S, STOP_S = 60.0, 30.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-_FALLBACK_RATE = Fraction(25)
+FALLBACK_RATE = Fraction(25)
 """Frames per second where a file states none."""
 
 
@@ -30,7 +30,7 @@ class PresentationClock:
     """
 
     def __init__(self, time_base: Fraction, rate: Fraction | None) -> None:
-        self._frame = max(1, round(1 / ((rate or _FALLBACK_RATE) * time_base)))
+        self._frame = max(1, round(1 / ((rate or FALLBACK_RATE) * time_base)))
         """What a frame lasts when it does not say so itself."""
         self._offset = 0
         self._stamp: int | None = None

@@ -22,7 +22,7 @@ from av.sidedata.sidedata import Type as SideDataType
 from numpy.typing import NDArray
 
 from core.errors import BadInput
-from core.video.clock import PresentationClock
+from core.video.clock import FALLBACK_RATE, PresentationClock
 from core.video.container import film_of, open_container, require_pixels
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.orientation import Orientation
@@ -158,7 +158,7 @@ class VideoReader:
 
     def _sound_frames(self) -> Iterator[Any]:
         """Frames that depend on nothing broken."""
-        duration = 1 / ((self.declared_rate or Fraction(25)) * self.time_base)
+        duration = 1 / ((self.declared_rate or FALLBACK_RATE) * self.time_base)
         for frame in self._decode():
             if frame is not None:
                 require_pixels(frame.width, frame.height, self.name, self._max_pixels)

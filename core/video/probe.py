@@ -9,6 +9,7 @@ from pathlib import Path
 
 from core.errors import BadInput
 from core.fingerprint import digest_of_file
+from core.video.clock import FALLBACK_RATE
 from core.video.decode import VideoReader
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.soundness import Loss
@@ -109,7 +110,7 @@ def _damage(reader: VideoReader, rows: Sequence[FrameRow]) -> list[str]:
     further = reader.losses[_MAX_PLACES:]
     if further:
         damage.append(f"{sum(loss.frames for loss in further)} frames lost at {len(further)} further places")
-    rate = reader.declared_rate or Fraction(25)
+    rate = reader.declared_rate or FALLBACK_RATE
     missing = reader.missing_at_end_s()
     if rows and missing > max(_END_TOLERANCE_S, _END_TOLERANCE_FRAMES / rate):
         damage.append(f"{float(missing):.1f} s missing at the end")

@@ -24,7 +24,7 @@ class Group(BaseModel):
         def __getattr__(self, name: str) -> Any:
             """Called only for what is not there: say so clearly where it is a declared option that was left out."""
             if name in type(self).model_fields:
-                raise UndeclaredOption(f"{type(self).__name__}.{name} is not among the settings that the stage declares")
+                raise UndeclaredOption(f"the stage does not declare that it reads {type(self).__name__}.{name}")
             return super().__getattr__(name)
 
 

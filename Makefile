@@ -27,11 +27,16 @@ lint: setup
 docs: setup ## build the documentation into out/site; a broken link or a page that is in no menu fails
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
+# Unit tests wait for databases and child processes more than they compute, so two files run side by side. Whole
+# deployments and runs on the sample fill the cores and watch the clock: one after the other.
+UNIT := $(BIN)/pytest -n 2 --dist loadfile -m "not sample and not deployment"
+
 check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
-	$(BIN)/pytest -m "not sample and not deployment"
+	$(UNIT)
 
 test: lint docs ## everything, with whole deployments and the runs on the sample
-	$(BIN)/pytest -m "not long"
+	$(UNIT)
+	$(BIN)/pytest -m "(sample or deployment) and not long"
 
 test-long: setup ## the walk-through on real jobs and the kill test on the sample (a quarter of an hour)
 	$(BIN)/pytest -m long

@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-service soak mutate lock clean
+.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-service soak mutate versions lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -58,6 +58,9 @@ soak: setup ## jobs through a whole deployment while its processes are killed (h
 
 mutate: setup ## change the code of AREA (placement, defects, annotations, points, plan) in 60 places, list what its tests miss
 	$(BIN)/bladeatlas-bench mutate $(AREA)
+
+versions: setup ## record the code behind each stage's version (SAME="how results were compared", when they are the same)
+	$(BIN)/python -m scripts.stage_versions --same "$(SAME)"
 
 lock: setup ## write requirements.lock from .venv
 	scripts/lock.sh

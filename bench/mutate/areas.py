@@ -51,7 +51,13 @@ AREAS: Mapping[str, Area] = {
             "store/remaking.py",
             "store/graph.py",
         ),
-        ("tests/core/test_graph.py", "tests/store/test_graph.py", "tests/store/test_plan.py"),
+        (
+            "tests/test_stage_versions.py",
+            "tests/core/test_graph.py",
+            "tests/core/test_stage_settings.py",
+            "tests/store/test_graph.py",
+            "tests/store/test_plan.py",
+        ),
     ),
     "points": Area(
         ("core/sparse/points.py", "core/sparse/tracks.py", "core/sparse/triangulation.py"),

@@ -65,6 +65,16 @@ def test_every_declared_option_is_read_by_the_stage_or_what_it_imports(stage: st
     assert not unread
 
 
+@pytest.mark.parametrize("stage", sorted(STAGES))
+def test_what_a_stage_reads_itself_is_declared(stage: str) -> None:
+    """Without running it: an option in a rare branch would end the stage only there."""
+    declared = set(_single_options(STAGES[stage].settings))
+    module = STAGES[stage].entry.partition(":")[0]
+    own = {module, "core.sparse.case_stage"} & _imported(module)
+    read = set().union(*(_options_read(name) for name in own))
+    assert read <= declared
+
+
 def test_the_reading_check_sees_an_option_that_nobody_reads() -> None:
     module = STAGES["fuse"].entry.partition(":")[0]
     read = set().union(*(_options_read(name) for name in _imported(module)))

@@ -16,11 +16,10 @@ from sqlalchemy.orm import Session
 from core.errors import BadInput
 from core.mapping.rows import DETECTION_COLUMNS
 from core.report.rows import CASE_COLUMNS
+from core.timeline.rows import TIMELINE_COLUMNS
 from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow, TableVersion
-
-EVENT_COLUMNS = tuple(c.name for c in EventRow.__table__.columns if c.name not in ("inspection_id", "task_key"))
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ class Table:
 
 CASES = Table("cases", CaseRow, CASE_COLUMNS, ("kind", "name"))
 DETECTIONS = Table("detections", DetectionRow, DETECTION_COLUMNS, ("id",))
-TIMELINE = Table("events", EventRow, EVENT_COLUMNS, ("event_id",))
+TIMELINE = Table("events", EventRow, TIMELINE_COLUMNS, ("event_id",))
 METRICS = Table("metrics", MetricRow, ("name", "value"), ("name",))
 DEFECTS = Table("defects", DefectRow, ("record",), ("id",))
 DEFECT_COLUMNS = (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import fcntl
 import signal
 import uuid
 from collections.abc import Callable, Iterator
@@ -12,6 +11,7 @@ from functools import partial
 
 import uvicorn
 from fastapi import FastAPI
+from filelock import FileLock, Timeout
 
 from api.app import create_app
 from api.services import make_services
@@ -71,22 +71,20 @@ def _alone(settings: DeploymentSettings) -> Iterator[str]:
         BadInput: another server uses the folder, or it cannot be written.
     """
     folder = settings.data_dir.absolute()
+    path = folder / "server.lock"  # holds the name as well
+    lock = FileLock(path, blocking=False, fallback_to_soft=False)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        stream = (folder / "server.lock").open("a+")
+        held = lock.acquire()
+    except Timeout:
+        raise BadInput(f"another server uses '{folder}'", code="folder_in_use", where="data_dir") from None
     except OSError as error:
         raise BadInput(f"the data folder '{folder}' cannot be written: {error.strerror}", where="data_dir") from None
-    with stream:
-        try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise BadInput(f"another server uses '{folder}'", code="folder_in_use", where="data_dir") from None
-        stream.seek(0)
-        name = stream.read().strip()
+    with held:
+        name = path.read_text(encoding="utf-8").strip()
         if not name:
             name = f"serve-{uuid.uuid4().hex[:12]}"
-            stream.write(name)
-            stream.flush()
+            path.write_text(name, encoding="utf-8")
         yield name
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import time
+from functools import partial
 from pathlib import Path
 
 from sqlalchemy import text
-from sqlalchemy.exc import OperationalError
 
 from store.artifacts import ArtifactStore
 from store.db import Database, make_engine, open_sqlite, upgrade
+from store.retry import retried_for
 from store.settings import DeploymentSettings
 
 _UPGRADE_LOCK = 0x626C6164
 """PostgreSQL's advisory lock under which tables are changed, so that processes may start together."""
-_PATIENCE_S = 60.0
-_RECONNECT_S = 0.5
+_STARTING_S = 60.0
+"""How long a database server that is just starting is waited for."""
 
 
 def open_database(settings: DeploymentSettings) -> Database:
@@ -29,15 +29,8 @@ def open_database(settings: DeploymentSettings) -> Database:
         path = settings.folder("bladeatlas.db")
         path.parent.mkdir(parents=True, exist_ok=True)
         return open_sqlite(path)
-    deadline = time.monotonic() + _PATIENCE_S
-    while True:
-        try:
-            _upgrade_one_at_a_time(settings.database_url)
-            return Database(settings.database_url)
-        except OperationalError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(_RECONNECT_S)
+    retried_for(_STARTING_S, partial(_upgrade_one_at_a_time, settings.database_url))
+    return Database(settings.database_url)
 
 
 def open_artifacts(settings: DeploymentSettings, folder: str = "") -> ArtifactStore:

@@ -1,6 +1,8 @@
 """The bytes of one upload while somebody writes to them: locked, positioned, and hashed on the way.
 
 The lock is the kernel's (flock), so it holds between processes and ends with whoever held it, kill -9 included.
+It is taken on the descriptor that is written through, by hand: filelock locks files of its own beside the data, which
+would be left over for every upload, and `tidy` would have to know them.
 """
 
 from __future__ import annotations

@@ -11,9 +11,9 @@ from store.db import Database
 from store.graph import load_graph
 from store.json_log import logger
 from store.opening import open_artifacts
+from store.retry import retried_until
 from store.settings import DeploymentSettings
 from worker.keeper import LeaseKeeper
-from worker.patience import patiently
 from worker.periodic import Periodic
 from worker.polling import PollingRunners
 from worker.queue import TaskQueue
@@ -64,7 +64,7 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
     keeper = LeaseKeeper(runner, settings.heartbeat_s)
 
     def run_next(queues: Sequence[str]) -> bool:
-        lease = patiently(plan.db, lambda: plan.lease(service.name, queues=queues), runner.interrupted)
+        lease = retried_until(runner.interrupted, plan.db, lambda: plan.lease(service.name, queues=queues))
         if lease is not None:
             runner.run(lease)
         return lease is not None

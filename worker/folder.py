@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import errno
-import fcntl
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+
+from filelock import FileLock, Timeout
 
 from core.errors import BadInput, BladeAtlasError, DiskFull
 from core.outputs import OUTPUTS, TABLES
@@ -58,27 +58,21 @@ def locked(out: Path) -> Iterator[RunFolder]:
         DiskFull: the disk has no space for it.
     """
     folder = RunFolder(out)
+    path = folder.hidden / "lock"
+    lock = FileLock(path, blocking=False, fallback_to_soft=False)  # the kernel's: a killed run holds nothing
     try:
         folder.hidden.mkdir(parents=True, exist_ok=True)
-        stream = (folder.hidden / "lock").open("a+")
-        stream.write(" ")
-        stream.flush()
+        held = lock.acquire()
+    except Timeout:
+        raise BadInput(f"another run is working in '{out}'", code="folder_in_use", where="--out") from None
     except OSError as error:
         raise _cannot_write(out, error) from None
-    with stream:
-        _take(stream, out)
-        # Truncated only under the lock; the write above proved that the disk takes data.
-        stream.truncate(0)
-        stream.write(str(os.getpid()))
-        stream.flush()
+    with held:
+        try:
+            path.write_text(str(os.getpid()), encoding="ascii")  # and proves that the disk takes data
+        except OSError as error:
+            raise _cannot_write(out, error) from None
         yield folder
-
-
-def _take(stream: IO[str], out: Path) -> None:
-    try:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise BadInput(f"another run is working in '{out}'", code="folder_in_use", where="--out") from None
 
 
 def _cannot_write(out: Path, error: OSError) -> BladeAtlasError:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
 
-from worker.patience import patiently
+from store.retry import retried_until
 from worker.runner import Held, TaskRunner
 
 T = TypeVar("T")
@@ -31,14 +31,14 @@ class LeaseKeeper:
         plan, next_beat = self.runner.plan, 0.0
         while not self.stopped.wait(TICK_S):
             held = list(self.runner.held.values())
-            self._patiently(partial(self._pass_on_cancellations, held))
+            self._retried(partial(self._pass_on_cancellations, held))
             if time.monotonic() >= next_beat:
                 next_beat = time.monotonic() + self.heartbeat_s
-                self._patiently(partial(self._beat, held))
-                self._patiently(plan.expire)
+                self._retried(partial(self._beat, held))
+                self._retried(plan.expire)
 
-    def _patiently(self, call: Callable[[], T]) -> T:
-        return patiently(self.runner.plan.db, call, self.stopped)
+    def _retried(self, call: Callable[[], T]) -> T:
+        return retried_until(self.stopped, self.runner.plan.db, call)
 
     def _pass_on_cancellations(self, held: Sequence[Held]) -> None:
         if held:

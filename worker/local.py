@@ -9,8 +9,8 @@ from functools import partial
 from typing import TypeVar
 
 from core.errors import BladeAtlasError
+from store.retry import retried_until
 from worker.keeper import TICK_S, LeaseKeeper
-from worker.patience import patiently
 from worker.runner import TaskRunner
 
 T = TypeVar("T")
@@ -45,7 +45,7 @@ class LocalRunners:
 
     def join(self, is_over: Callable[[], bool]) -> None:
         """Wait until `is_over` or until a thread failed; then all threads have ended."""
-        while not self._stop.is_set() and not self._patiently(is_over):
+        while not self._stop.is_set() and not self._retried(is_over):
             with self._woken:
                 self._woken.wait(TICK_S)
         self.stop()
@@ -72,13 +72,13 @@ class LocalRunners:
             self.runner.interrupted.set()
             self.wake()
 
-    def _patiently(self, call: Callable[[], T]) -> T:
-        return patiently(self.runner.plan.db, call, self._stop)
+    def _retried(self, call: Callable[[], T]) -> T:
+        return retried_until(self._stop, self.runner.plan.db, call)
 
     def _work(self, number: int) -> None:
         plan = self.runner.plan
         while not self._stop.is_set():
-            lease = self._patiently(
+            lease = self._retried(
                 lambda: plan.lease(f"{self.owner}/{number}", inspection_id=self.inspection_id, queues=self.queues)
             )
             if lease is not None:

@@ -22,9 +22,9 @@ from store.inputs import LocalInputs
 from store.json_log import logger
 from store.plan import Plan
 from store.records import Lease, Result
+from store.retry import retried_until
 from store.settings import available_cores
 from worker.logs import TaskLogs
-from worker.patience import patiently
 from worker.process import Ended, StopReason, TaskProcess
 from worker.results import Manifest, ResultFolders
 from worker.rows import rows_of
@@ -102,7 +102,7 @@ class TaskRunner:
         missing = [key for key, path in lease.inputs.items() if not self.results.have(path)]
         if missing:
             _log.warning("results_vanished", **ids(lease), missing=missing)
-            remade = self._patiently(lambda: self.plan.remake(lease, missing))
+            remade = self._retried(lambda: self.plan.remake(lease, missing))
             return AttemptOutcome.RELEASED if remade else AttemptOutcome.REFUSED, None
         temporary = self.results.begin(lease.stage, lease.fingerprint)
         try:
@@ -157,14 +157,14 @@ class TaskRunner:
 
     def _complete(self, lease: Lease, manifest: Manifest, peak_rss_bytes: int) -> AttemptOutcome:
         result = result_of(manifest, self.results, peak_rss_bytes=peak_rss_bytes)
-        accepted = self._patiently(lambda: self.plan.complete(lease, result))
+        accepted = self._retried(lambda: self.plan.complete(lease, result))
         return AttemptOutcome.SUCCEEDED if accepted else AttemptOutcome.REFUSED
 
     def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> AttemptOutcome:
         # A full disk would fail every other task as well, and tolerating it would spoil the result unseen.
         record = {**error.to_dict(), "stops_run": isinstance(error, DiskFull)}
         retry = error.retryable and error.code not in _SAME_AGAIN
-        return self._patiently(
+        return self._retried(
             lambda: self.plan.fail(lease, record, retry=retry, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
         )
 
@@ -177,11 +177,11 @@ class TaskRunner:
 
     def _release(self, lease: Lease) -> AttemptOutcome:
         # A lost lease is given back as well: the plan refuses it, and the attempt says so.
-        released = self._patiently(lambda: self.plan.release(lease))
+        released = self._retried(lambda: self.plan.release(lease))
         return AttemptOutcome.RELEASED if released else AttemptOutcome.REFUSED
 
-    def _patiently(self, call: Callable[[], T]) -> T:
-        return patiently(self.plan.db, call, self.interrupted)
+    def _retried(self, call: Callable[[], T]) -> T:
+        return retried_until(self.interrupted, self.plan.db, call)
 
 
 def ids(lease: Lease) -> dict[str, str | int]:

@@ -19,18 +19,16 @@ from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.db import Database
-from store.environment import deployment_settings
+from store.factory import open_artifacts, open_database
 from store.graph import Graph, load_graph
+from store.housekeeping import Retention
 from store.keys import Keys
-from store.opening import open_artifacts, open_database
 from store.plan import Plan
-from store.retention import Retention
-from store.settings import DeploymentSettings
+from store.settings import DeploymentSettings, deployment_settings
+from worker.broker import TaskQueue
 from worker.cleaner import UploadCleaner
+from worker.loop import PollingRunners, WorkerService
 from worker.periodic import Periodic
-from worker.polling import PollingRunners
-from worker.queue import TaskQueue
-from worker.service import WorkerService
 
 _log = json_log.logger("bladeatlas.server")
 _DRAIN_S = 5
@@ -113,8 +111,8 @@ def _background(
 ) -> Callable[[str], None]:
     """Start what runs beside the API; returns what to call when an inspection has work."""
     uploads = UploadCleaner(Retention(database), settings.folder("uploads"), settings.stale_s)
-    chore = Periodic("uploads", uploads.round, settings.sweep_s)
-    _run(running, chore)
+    cleaning = Periodic("uploads", uploads.round, settings.sweep_s)
+    _run(running, cleaning)
     if settings.broker_url:
         queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
         plan = Plan(database, graph, settings.lease_s, settings.max_attempts)

@@ -152,7 +152,7 @@ class Result(Base):
     digest: Mapped[str] = mapped_column(String(64))
     facts: Mapped[dict[str, Any]]
     rows: Mapped[dict[str, Any]]
-    """What the table rows of this result are made from; see `store.rows`."""
+    """What the table rows of this result are made from; see `store.tables`."""
     path: Mapped[str]
     seconds: Mapped[float]
     peak_rss_bytes: Mapped[int] = mapped_column(BigInteger)
@@ -235,7 +235,7 @@ class TableVersion(Base):
 
     inspection_id: Mapped[str] = _inspection_key()
     name: Mapped[str] = mapped_column(String(16), primary_key=True)
-    """As `store.rows` calls the table, e.g. ``events``."""
+    """Name of the `store.tables.Table`, e.g. ``events``."""
     version: Mapped[int]
     """Grows with every change; without a row it is 0."""
 

@@ -21,8 +21,8 @@ from api.parameters import Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
 from core.mapping.rows import Outcome
-from store.artifact_rows import ArtifactRows
 from store.models import ACTIVE_INSPECTION, Inspection
+from store.publishing import ArtifactRows
 from store.status import shown_state
 from store.tables import (
     CASES,

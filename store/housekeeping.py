@@ -1,4 +1,4 @@
-"""What may be removed: questions and small transactions of the cleaner. Files are removed by whoever asks.
+"""Housekeeping: what may be removed, as questions and small transactions. Files are removed by whoever asks.
 
 Rows go first and files afterwards, so a crash leaves files that belong to nothing. Those are found by
 comparing what there is with what is used: the same answer after any crash, however often it is asked.
@@ -26,7 +26,7 @@ from store.models import (
     Worker,
 )
 from store.publishing import artifact_prefix
-from store.rows import clear_rows
+from store.tables import clear_rows
 
 _IDEMPOTENCY_DAYS = 3
 _WORKER_DAYS = 1

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from core.errors import BadInput, StageFailed, error_from_dict
-from worker.child import describe
+from worker.task import describe
 
 
 def raised(error: BaseException, cause: BaseException | None = None) -> BaseException:
@@ -40,5 +40,5 @@ def test_errors_cross_the_border_by_what_they_mean(
 
 
 def test_any_error_on_a_full_disk_is_the_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("worker.child.disk_is_full", lambda _folder: True)
+    monkeypatch.setattr("worker.task.disk_is_full", lambda _folder: True)
     assert describe(StageFailed("could not read model"), "join", tmp_path)["code"] == "disk_full"

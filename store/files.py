@@ -1,7 +1,8 @@
-"""The storage port: files by relative path, written whole or not at all, with size and SHA-256.
+"""The storage port: files by relative path, written whole or not at all, with size and SHA-256; inputs among them.
 
 One class serves every file system that fsspec knows. On a local folder a write goes to a temporary name, is
-synced and renamed; object stores make a whole object visible at its end by themselves.
+synced and renamed; object stores make a whole object visible at its end by themselves. Inputs of an object store are
+fetched to a local file that a stage can open.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import hashlib
 import os
 import time
 import uuid
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -23,6 +24,7 @@ from fsspec.implementations.local import LocalFileSystem
 from core.errors import BadInput, ResourceError
 from core.fingerprint import digest_of_file
 from store.disk import sync_path
+from store.records import InputFiles
 
 _CHUNK = 1 << 20
 _PART = ".part-"
@@ -217,3 +219,58 @@ def _copy(read: IO[bytes], write: IO[bytes]) -> tuple[str, int]:
         digest.update(chunk)
         size += write.write(chunk)
     return digest.hexdigest(), size
+
+
+def input_key(sha256: str, role: str) -> str:
+    """Where an input lies in the artifact store; `role` is ``video`` or ``annotations``."""
+    return f"inputs/{sha256}/{role}"
+
+
+@dataclass(frozen=True)
+class LocalInputs:
+    """Resolves the inputs of an inspection; those of `bladeatlas run` are local paths already."""
+
+    store: ArtifactStore | None = None
+    cache: Path | None = None
+    """Where inputs from an object store are kept as long as an inspection uses them."""
+
+    def video(self, files: InputFiles, needed: bool) -> Path:
+        """The video as a local file.
+
+        Args:
+            needed: False = only its name is asked for; nothing is downloaded.
+
+        Raises:
+            FileNotFoundError: it is gone from the store.
+            ResourceError: what the store holds is damaged.
+        """
+        return self._local(files.video, files.video_sha256, needed)
+
+    def annotations(self, files: InputFiles, needed: bool) -> Path | None:
+        """The annotations, the same way; None when the inspection has none."""
+        if files.annotations is None or files.annotations_sha256 is None:
+            return None
+        return self._local(files.annotations, files.annotations_sha256, needed)
+
+    def evict(self, used: Collection[str], older_than_s: float) -> int:
+        """Remove cached files whose hash nobody uses and that were not opened lately; returns how many."""
+        removed = 0
+        for path in self.cache.iterdir() if self.cache is not None and self.cache.is_dir() else ():
+            with suppress(FileNotFoundError):
+                if path.name not in used and time.time() - path.stat().st_mtime >= older_than_s:
+                    path.unlink()
+                    removed += 1
+        return removed
+
+    def _local(self, key: str, sha256: str, needed: bool) -> Path:
+        if self.store is None or Path(key).is_absolute():
+            return Path(key)
+        if self.store.folder is not None:
+            return self.store.folder / key
+        assert self.cache is not None, "inputs of an object store need a folder to lie in"
+        path = self.cache / sha256
+        if needed and path.is_file():
+            os.utime(path)
+        elif needed:
+            self.store.fetch(key, path, sha256)
+        return path

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.errors import BadInput, ResourceError
-from store.artifacts import UNREACHABLE, ArtifactStore, Stored
+from store.files import UNREACHABLE, ArtifactStore, Stored
 from tests.store.object_store import new_bucket, options
 
 

@@ -7,7 +7,7 @@ import time
 from collections.abc import Sequence
 
 from tests.worker.deployment import wait_for
-from worker.slots import Slots
+from worker.loop import ConcurrencyLimit
 
 
 class Work:
@@ -37,24 +37,24 @@ class Work:
 def test_a_worker_without_messages_does_all_there_is() -> None:
     work = Work(3)
     work.gate.set()
-    Slots(1, work.run_next, threading.Event(), quiet_s=0.0).without_message(("cpu", "gpu"))
+    ConcurrencyLimit(1, work.run_next, threading.Event(), quiet_s=0.0).without_message(("cpu", "gpu"))
     assert work.ran == [("cpu", "gpu")] * 3
 
 
 def test_a_worker_that_just_heard_a_message_leaves_the_rest_to_the_broker() -> None:
     work = Work(3)
     work.gate.set()
-    slots = Slots(1, work.run_next, threading.Event(), quiet_s=60.0)
-    slots.on_message("cpu")
-    slots.without_message(("cpu",))
+    limit = ConcurrencyLimit(1, work.run_next, threading.Event(), quiet_s=60.0)
+    limit.on_message("cpu")
+    limit.without_message(("cpu",))
     assert work.ran == [("cpu",)]
 
 
-def test_messages_and_own_looks_share_the_slots() -> None:
+def test_messages_and_own_looks_share_the_limit() -> None:
     work = Work(4)
-    slots = Slots(1, work.run_next, threading.Event(), quiet_s=0.0)
-    threads = [threading.Thread(target=slots.on_message, args=("cpu",)) for _ in range(2)]
-    threads += [threading.Thread(target=slots.without_message, args=(("cpu",),))]
+    limit = ConcurrencyLimit(1, work.run_next, threading.Event(), quiet_s=0.0)
+    threads = [threading.Thread(target=limit.on_message, args=("cpu",)) for _ in range(2)]
+    threads += [threading.Thread(target=limit.without_message, args=(("cpu",),))]
     for thread in threads:
         thread.start()
     wait_for(lambda: work.running == 1)
@@ -68,13 +68,13 @@ def test_messages_and_own_looks_share_the_slots() -> None:
 
 def test_a_stopping_worker_starts_nothing() -> None:
     work, stopped = Work(2), threading.Event()
-    slots = Slots(1, work.run_next, stopped, quiet_s=0.0)
-    first = threading.Thread(target=slots.on_message, args=("cpu",))
+    limit = ConcurrencyLimit(1, work.run_next, stopped, quiet_s=0.0)
+    first = threading.Thread(target=limit.on_message, args=("cpu",))
     first.start()
     wait_for(lambda: work.running == 1)
     stopped.set()
-    slots.on_message("cpu")
-    slots.without_message(("cpu",))
+    limit.on_message("cpu")
+    limit.without_message(("cpu",))
     work.gate.set()
     first.join(10.0)
     assert len(work.ran) == 1

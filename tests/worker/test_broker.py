@@ -12,14 +12,14 @@ import pytest
 from redis import Redis
 from sqlalchemy import select
 
-from store.artifacts import ArtifactStore
+from store.files import ArtifactStore
 from store.models import Inspection
 from store.plan import Plan
 from tests.databases import database
 from tests.store.object_store import new_bucket, options
 from tests.worker.deployment import Deployment, wait_for
 from tests.worker.fake_stages import GRAPH
-from worker.queue import TaskQueue
+from worker.broker import TaskQueue
 
 ALL = ["join", "last", "part/000", "part/001", "split"]
 pytestmark = [pytest.mark.deployment, pytest.mark.service("redis"), pytest.mark.service("postgresql")]

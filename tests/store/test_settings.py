@@ -12,7 +12,7 @@ import pytest
 from cli import exits
 from cli.main import main
 from core.errors import BadInput
-from store.environment import PREFIX, deployment_settings
+from store.settings import PREFIX, deployment_settings
 from tests.test_house import ROOT, texts
 
 WRONG = f"{PREFIX}MAXACTIVE"

@@ -13,7 +13,7 @@ from core.errors import BadInput
 from core.settings import make_settings
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH
-from worker.run import Names, run_inspection
+from worker.local_run import Names, run_inspection
 
 ALL = ["join", "last", "part/000", "part/001", "split"]
 

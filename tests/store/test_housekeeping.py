@@ -12,10 +12,10 @@ from core.errors import BadInput
 from core.settings import make_settings
 from store.db import Database
 from store.graph import CORE_GRAPH, load_graph
+from store.housekeeping import Retention
 from store.inspections import Inspections
 from store.models import Inspection, MetricRow, Result, Task, Upload
 from store.plan import Plan
-from store.retention import Retention
 from tests.store.small_plan import FILES, GRAPH, result_for
 
 

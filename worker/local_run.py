@@ -1,7 +1,11 @@
-"""`run_inspection`: the plan with local runners, as the command line calls it."""
+"""A local run: the plan with local runners in the folder of the result, as the command line calls it.
+
+The folder keeps `.bladeatlas/` inside it, and serves one run at a time and one input unless forced.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import threading
@@ -12,30 +16,96 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import FrameType
 
+from filelock import FileLock, Timeout
+
 from core.errors import BadInput, BladeAtlasError, Cancelled, DiskFull, error_from_dict
 from core.files import require_file
 from core.fingerprint import digest_of_file
+from core.outputs import OUTPUTS, TABLES
 from core.report.summary import stage_state
 from core.settings import Settings
 from core.states import RunState, TaskState, run_state
 from store.db import Database, open_sqlite
-from store.environment import deployment_settings
 from store.graph import CORE_GRAPH, Graph
 from store.inspections import Inspections, input_digest
 from store.models import ACTIVE_INSPECTION, OVER_TASK
 from store.plan import Plan
 from store.records import InputFiles, InspectionView, TaskView
-from store.settings import available_cores
-from worker.folder import RunFolder, locked
-from worker.local import LocalRunners, raise_failure
+from store.settings import available_cores, deployment_settings
+from worker.events import OnEvent, Outcome, Reporter, StageOutcome, Tracker
 from worker.logs import TaskLogs
-from worker.outcome import OnEvent, Outcome, StageOutcome
-from worker.publish import record_of, report_rows
-from worker.publish_folder import publish
-from worker.reporter import Reporter
+from worker.loop import LocalRunners, raise_failure
+from worker.publish import publish, record_of, report_rows
 from worker.results import ResultFolders
 from worker.runner import TaskRunner, result_of
-from worker.tracker import Tracker
+
+HIDDEN = ".bladeatlas"
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """Where things lie in the output folder of a local run."""
+
+    out: Path
+
+    @property
+    def hidden(self) -> Path:
+        """This program's own folder."""
+        return self.out / HIDDEN
+
+    @property
+    def database(self) -> Path:
+        """The plan."""
+        return self.hidden / "plan.db"
+
+    @property
+    def results(self) -> Path:
+        """Results by stage and fingerprint."""
+        return self.hidden / "results"
+
+    @property
+    def logs(self) -> Path:
+        """One log per task."""
+        return self.hidden / "logs"
+
+    def foreign_files(self) -> list[str]:
+        """Names of the contract that are taken; in a folder without a plan, by files of somebody else."""
+        names = (*TABLES, *(output.path for output in OUTPUTS))
+        return [name for name in names if (self.out / name).exists()]
+
+
+@contextmanager
+def locked(out: Path) -> Iterator[RunFolder]:
+    """The folder, made when needed and held against other runs.
+
+    Raises:
+        BadInput: it is no folder, may not be written, or another run uses it.
+        DiskFull: the disk has no space for it.
+    """
+    folder = RunFolder(out)
+    path = folder.hidden / "lock"
+    lock = FileLock(path, blocking=False, fallback_to_soft=False)  # the kernel's: a killed run holds nothing
+    try:
+        folder.hidden.mkdir(parents=True, exist_ok=True)
+        held = lock.acquire()
+    except Timeout:
+        raise BadInput(f"another run is working in '{out}'", code="folder_in_use", where="--out") from None
+    except OSError as error:
+        raise _cannot_write(out, error) from None
+    with held:
+        try:
+            path.write_text(str(os.getpid()), encoding="ascii")  # and proves that the disk takes data
+        except OSError as error:
+            raise _cannot_write(out, error) from None
+        yield folder
+
+
+def _cannot_write(out: Path, error: OSError) -> BladeAtlasError:
+    reason = os.strerror(error.errno or 0).lower()
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return DiskFull(f"the output folder '{out}' cannot be written: {reason}", where="--out")
+    return BadInput(f"the output folder '{out}' cannot be written: {reason}", code="unwritable_output", where="--out")
+
 
 _LOCAL = "local"
 """Id of the one inspection in the plan of an output folder."""

@@ -1,4 +1,4 @@
-"""From deployment settings to what they name: the database with its tables, the artifact store."""
+"""Factories: from deployment settings to what they name, the database with its tables and the artifact store."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 
 from sqlalchemy import text
 
-from store.artifacts import ArtifactStore
 from store.db import Database, make_engine, open_sqlite, upgrade
+from store.files import ArtifactStore
 from store.retry import retried_for
 from store.settings import DeploymentSettings
 

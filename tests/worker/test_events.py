@@ -8,7 +8,7 @@ import pytest
 
 from store.records import TaskView
 from tests.worker.fake_stages import GRAPH
-from worker.tracker import Tracker
+from worker.events import Tracker
 
 
 def view(key: str, state: str, seconds: float | None = None) -> TaskView:

@@ -32,8 +32,8 @@ from api.trust import TrustMiddleware
 from api.watching import Watcher
 from core.errors import BadInput
 from core.versions import program_version
-from store.environment import deployment_settings
 from store.keys import KeyRing, Keys
+from store.settings import deployment_settings
 
 _ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, logs, artifacts, frames)
 

@@ -26,8 +26,7 @@ from api.state import State
 from core.errors import BadInput
 from core.fingerprint import digest_of
 from core.settings import Settings, make_settings
-from store.admission import Place
-from store.idempotency import IdempotencyKeys
+from store.admission import IdempotencyKeys, Place
 from store.records import InputFiles
 
 

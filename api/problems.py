@@ -17,7 +17,7 @@ from starlette.exceptions import HTTPException
 from core.errors import BadInput, BladeAtlasError, Cancelled, DiskFull, NoReconstruction, ResourceError
 from store.admission import LimitReached
 from store.json_log import logger
-from store.upload_file import UploadLocked
+from store.uploads import UploadLocked
 
 MEDIA_TYPE = "application/problem+json"
 _STATUS: tuple[tuple[type[BladeAtlasError], HTTPStatus], ...] = (

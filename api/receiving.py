@@ -17,8 +17,7 @@ from api.problems import Refused
 from api.services import Services
 from api.state import State
 from api.threads import LimitedThreads
-from store.upload_file import UploadFile
-from store.uploads import UploadView
+from store.uploads import UploadFile, UploadView
 
 T = TypeVar("T")
 

@@ -18,8 +18,8 @@ from core.fingerprint import digest_of
 from core.flags import Severity
 from core.states import InspectionState
 from core.versions import all_versions
-from store.artifact_rows import ArtifactRows
 from store.models import LEASABLE, Inspection
+from store.publishing import ArtifactRows
 from store.status import PUBLISH, InspectionStatus, StageStatus, Statuses
 from store.timings import Timings, learn_timings, plan_eta, stage_eta
 

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from store.admission import Admission
-from store.artifacts import ArtifactStore
 from store.db import Database
+from store.factory import open_artifacts, open_database
+from store.files import ArtifactStore
 from store.graph import CORE_GRAPH, Graph, load_graph
 from store.inspections import Inspections
 from store.logs import InspectionLogs
-from store.opening import open_artifacts, open_database
 from store.plan import Plan
 from store.settings import DeploymentSettings
 from store.uploads import Uploads

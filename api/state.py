@@ -12,7 +12,7 @@ from api.resource import Resources
 from api.services import Services
 from api.watching import Watcher
 from store.keys import KeyRing
-from store.upload_file import Digests
+from store.uploads import Digests
 
 
 @dataclass(frozen=True)

@@ -2,53 +2,75 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import GenericAlias
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, create_model
+
+from core.mapping.rows import DetectionRow
+from core.report.columns import columns_of
+from core.report.rows import CaseRow
+from core.timeline.rows import EventRow
+from store.tables import CASES, DETECTIONS, TIMELINE, Table
 
 
-class Case(BaseModel):
-    """A row of cases.csv."""
+def list_of(row: type[BaseModel]) -> Any:
+    """For `response_model=`: a list of such rows. Their classes are made, so a type checker takes none for a type."""
+    return GenericAlias(list, (row,))
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "example": {
-                "name": "seg_000_0000_0180",
-                "kind": "coarse",
-                "start": 0,
-                "end": 180,
-                "status": "succeeded",
-                "reason": None,
-                "frames": 180,
-                "models": 1,
-                "registered_images": 171,
-                "points3D": 20417,
-                "mean_reprojection_error_px": 0.61,
-                "median_reprojection_error_px": 0.52,
-                "seconds": 48.1,
-                "start_mode": "scratch",
-                "selected": 1,
-                "vetoed": 0,
-            }
-        }
-    )
 
-    name: str
-    kind: str
-    start: int
-    end: int
-    status: str
-    reason: str | None
-    frames: int
-    models: int
-    registered_images: int
-    points3D: int  # noqa: N815 - the contract's column
-    mean_reprojection_error_px: float | None
-    median_reprojection_error_px: float | None
-    seconds: float
-    start_mode: str | None
-    selected: int
-    vetoed: int = Field(description="1: a check calls the model wrong; it wins only where model.veto is off")
+def _row_model(name: str, doc: str, declared: type[Any], table: Table, example: Mapping[str, Any]) -> type[BaseModel]:
+    """The model of a row: its columns as they are declared, empty where the database lets them be."""
+    stored = table.model.__table__.columns
+    fields: dict[str, Any] = {
+        column.name: (
+            column.kind | None if stored[column.name].nullable else column.kind,
+            Field(description=column.meaning),
+        )
+        for column in columns_of(declared)
+    }
+    config = ConfigDict(json_schema_extra={"example": dict(example)})
+    return create_model(name, __config__=config, __doc__=doc, __module__=__name__, **fields)
+
+
+Case = _row_model(
+    "Case",
+    "A row of cases.csv.",
+    CaseRow,
+    CASES,
+    {
+        "name": "seg_000_0000_0180",
+        **{"kind": "coarse", "start": 0, "end": 180, "status": "succeeded", "reason": None},
+        **{"frames": 180, "models": 1, "registered_images": 171, "points3D": 20417},
+        **{"mean_reprojection_error_px": 0.61, "median_reprojection_error_px": 0.52},
+        **{"seconds": 48.1, "start_mode": "scratch", "selected": 1, "vetoed": 0},
+    },
+)
+Detection = _row_model(
+    "Detection",
+    "A row of mapping/detections.csv.",
+    DetectionRow,
+    DETECTIONS,
+    {
+        **{"id": 0, "key": "12.5", "time_s": 12.5, "label": "dent", "score": 0.91},
+        **{"box_x1": 0.41, "box_y1": 0.38, "box_x2": 0.47, "box_y2": 0.44},
+        **{"frame_index": 125, "outcome": "mapped", "reason": None, "rung": "sparse", "support_points": 14},
+        **{"x": 0.12, "y": -0.4, "z": 2.31},
+        **{"confidence": None, "blade": None, "defect_id": 3, "model": 0},
+    },
+)
+Event = _row_model(
+    "Event",
+    "A row of mapping/timeline.csv.",
+    EventRow,
+    TIMELINE,
+    {
+        **{"event_id": 0, "defect_id": 3, "label": "dent", "start_s": 12.1, "end_s": 13.4},
+        **{"n_detections": 9, "n_frames": 9, "x": 0.12, "y": -0.4, "z": 2.31},
+        **{"radius": 0.03, "confidence": None},
+    },
+)
 
 
 class Metric(BaseModel):
@@ -58,79 +80,6 @@ class Metric(BaseModel):
 
     name: str = Field(description="`<task key>.<fact>`")
     value: float
-
-
-class Detection(BaseModel):
-    """A row of mapping/detections.csv."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "example": {
-                "id": 0,
-                "key": "12.5",
-                "time_s": 12.5,
-                "label": "dent",
-                "score": 0.91,
-                **{"box_x1": 0.41, "box_y1": 0.38, "box_x2": 0.47, "box_y2": 0.44},
-                "frame_index": 125,
-                "outcome": "mapped",
-                "reason": None,
-                "rung": "sparse",
-                "support_points": 14,
-                **{"x": 0.12, "y": -0.4, "z": 2.31},
-                **{"confidence": None, "blade": None, "defect_id": 3, "model": 0},
-            }
-        }
-    )
-
-    id: int
-    key: str
-    time_s: float | None
-    label: str
-    score: float | None
-    box_x1: float
-    box_y1: float
-    box_x2: float
-    box_y2: float
-    frame_index: int | None
-    outcome: str
-    reason: str | None
-    rung: str | None
-    support_points: int | None
-    x: float | None
-    y: float | None
-    z: float | None
-    confidence: float | None
-    blade: str | None
-    defect_id: int | None
-    model: int | None
-
-
-class Event(BaseModel):
-    """A row of mapping/timeline.csv."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "example": {
-                **{"event_id": 0, "defect_id": 3, "label": "dent", "start_s": 12.1, "end_s": 13.4},
-                **{"n_detections": 9, "n_frames": 9, "x": 0.12, "y": -0.4, "z": 2.31},
-                **{"radius": 0.03, "confidence": None},
-            }
-        }
-    )
-
-    event_id: int
-    defect_id: int | None
-    label: str
-    start_s: float
-    end_s: float
-    n_detections: int
-    n_frames: int
-    x: float | None
-    y: float | None
-    z: float | None
-    radius: float | None
-    confidence: float | None
 
 
 class Defect(BaseModel):

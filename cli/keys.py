@@ -7,9 +7,9 @@ from dataclasses import asdict
 from typing import Any
 
 from cli.terminal import say, say_json
-from store.environment import deployment_settings
+from store.factory import open_database
 from store.keys import Keys, KeyView
-from store.opening import open_database
+from store.settings import deployment_settings
 
 
 def command(parsed: argparse.Namespace) -> int:

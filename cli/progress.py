@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from cli.terminal import console, say_json, visible
 from core.states import TaskState
-from worker.outcome import Event
+from worker.events import Event
 
 PLAIN_INTERVAL_S = 15.0
 """A log gets a line of progress no more often than this, besides one line per finished stage."""

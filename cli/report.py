@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cli.progress import duration
-from worker.outcome import Outcome
+from worker.events import Outcome
 
 SHOWN_FILES = (
     ("gallery/index.html", "detections on the frames, the mesh from two sides: open this first"),

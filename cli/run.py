@@ -11,8 +11,8 @@ from core.errors import BadInput
 from core.graph import STAGES
 from core.intake import check_input
 from core.states import RunState
-from worker.outcome import Outcome
-from worker.run import Names, run_inspection
+from worker.events import Outcome
+from worker.local_run import Names, run_inspection
 
 
 def command(parsed: argparse.Namespace) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import fcntl
 import signal
 import uuid
 from collections.abc import Callable, Iterator
@@ -12,6 +11,7 @@ from functools import partial
 
 import uvicorn
 from fastapi import FastAPI
+from filelock import FileLock, Timeout
 
 from api.app import create_app
 from api.services import make_services
@@ -19,18 +19,16 @@ from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.db import Database
-from store.environment import deployment_settings
+from store.factory import open_artifacts, open_database
 from store.graph import Graph, load_graph
+from store.housekeeping import Retention
 from store.keys import Keys
-from store.opening import open_artifacts, open_database
 from store.plan import Plan
-from store.retention import Retention
-from store.settings import DeploymentSettings
+from store.settings import DeploymentSettings, deployment_settings
+from worker.broker import TaskQueue
 from worker.cleaner import UploadCleaner
+from worker.loop import PollingRunners, WorkerService
 from worker.periodic import Periodic
-from worker.polling import PollingRunners
-from worker.queue import TaskQueue
-from worker.service import WorkerService
 
 _log = json_log.logger("bladeatlas.server")
 _DRAIN_S = 5
@@ -71,22 +69,20 @@ def _alone(settings: DeploymentSettings) -> Iterator[str]:
         BadInput: another server uses the folder, or it cannot be written.
     """
     folder = settings.data_dir.absolute()
+    path = folder / "server.lock"  # holds the name as well
+    lock = FileLock(path, blocking=False, fallback_to_soft=False)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        stream = (folder / "server.lock").open("a+")
+        held = lock.acquire()
+    except Timeout:
+        raise BadInput(f"another server uses '{folder}'", code="folder_in_use", where="data_dir") from None
     except OSError as error:
         raise BadInput(f"the data folder '{folder}' cannot be written: {error.strerror}", where="data_dir") from None
-    with stream:
-        try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise BadInput(f"another server uses '{folder}'", code="folder_in_use", where="data_dir") from None
-        stream.seek(0)
-        name = stream.read().strip()
+    with held:
+        name = path.read_text(encoding="utf-8").strip()
         if not name:
             name = f"serve-{uuid.uuid4().hex[:12]}"
-            stream.write(name)
-            stream.flush()
+            path.write_text(name, encoding="utf-8")
         yield name
 
 
@@ -115,8 +111,8 @@ def _background(
 ) -> Callable[[str], None]:
     """Start what runs beside the API; returns what to call when an inspection has work."""
     uploads = UploadCleaner(Retention(database), settings.folder("uploads"), settings.stale_s)
-    chore = Periodic("uploads", uploads.round, settings.sweep_s)
-    _run(running, chore)
+    cleaning = Periodic("uploads", uploads.round, settings.sweep_s)
+    _run(running, cleaning)
     if settings.broker_url:
         queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
         plan = Plan(database, graph, settings.lease_s, settings.max_attempts)

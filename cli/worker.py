@@ -8,11 +8,10 @@ from cli.terminal import say
 from core.errors import BadInput
 from store import json_log
 from store.db import Database
-from store.environment import deployment_settings
-from store.opening import open_database
-from store.settings import DeploymentSettings
-from store.workers import WorkerRegistry
-from worker.distributed import run_worker
+from store.factory import open_database
+from store.monitoring import WorkerRegistry
+from store.settings import DeploymentSettings, deployment_settings
+from worker.broker import run_worker
 
 _QUEUES = ("cpu", "gpu")
 _LATE = 3

@@ -1,8 +1,11 @@
-"""Who may begin what: limits on active inspections, open uploads and promised bytes, of one owner and of all.
+"""Admission: limits on active inspections, open uploads and promised bytes, and requests that have one effect.
 
 A limit is asked for and used up in one transaction, and such transactions follow one another, in one process
 or in many. What a request needs before it has a row of its own it holds as a reservation, which ends with the
 request, or by its time when the process was killed.
+
+An idempotency key is written in the transaction that creates the inspection, so a crash leaves either both or
+neither, and of two equal requests at once the database lets one through; the other finds what it made.
 """
 
 from __future__ import annotations
@@ -19,9 +22,9 @@ from sqlalchemy import ColumnElement, delete, func, or_, select
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from core.errors import BladeAtlasError, DiskFull
+from core.errors import BadInput, BladeAtlasError, DiskFull
 from store.db import Database
-from store.models import ACTIVE_INSPECTION, Inspection, Reservation, Upload
+from store.models import ACTIVE_INSPECTION, IdempotencyKey, Inspection, Reservation, Upload
 from store.settings import DeploymentSettings
 
 INSPECTION, UPLOAD = "inspection", "upload"
@@ -210,3 +213,37 @@ def _require(
             suffix = "_of_owner" if whose else ""
             message = f"{used} {what}{whose} already, and {name} is {limit}; try again later"
             raise LimitReached(message, code=code + suffix, where=name)
+
+
+class OtherBody(BadInput):
+    """The key was used with another body."""
+
+    code = "idempotency_key_reused"
+
+
+@dataclass(frozen=True)
+class IdempotencyKeys:
+    """Keys of all owners."""
+
+    db: Database
+
+    def find(self, owner: str, key: str, body_sha256: str) -> str | None:
+        """Inspection that this request made before; None when it is new.
+
+        Raises:
+            OtherBody: the key belongs to a request with another body.
+        """
+        with self.db.read() as session:
+            row = session.get(IdempotencyKey, (owner, key))
+        if row is None:
+            return None
+        if row.body_sha256 != body_sha256:
+            raise OtherBody("this Idempotency-Key was used with another body", where="Idempotency-Key")
+        return row.inspection_id
+
+    def add(self, session: Session, owner: str, key: str, body_sha256: str, inspection_id: str) -> None:
+        """Write the key inside the transaction that creates the inspection; IntegrityError when it is there."""
+        row = IdempotencyKey(owner=owner, key=key, body_sha256=body_sha256, inspection_id=inspection_id)
+        row.created_at = self.db.now(session)
+        session.add(row)
+        session.flush()

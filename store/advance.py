@@ -21,7 +21,7 @@ from core.stage import Facts
 from core.states import InspectionState, TaskState
 from store.graph import Graph
 from store.models import LEASABLE, OVER_TASK, Inspection, Result, Task
-from store.rows import write_rows
+from store.tables import write_rows
 
 
 def advance(session: Session, graph: Graph, inspection: Inspection, now: datetime) -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import Any
+from typing import Any, TypeVar
 
-from sqlalchemy import JSON, DateTime, Dialect, MetaData, String
-from sqlalchemy.orm import DeclarativeBase
-from sqlalchemy.types import TypeDecorator
+from sqlalchemy import JSON, DateTime, Dialect, Double, Integer, MetaData, String
+from sqlalchemy.orm import DeclarativeBase, mapped_column
+from sqlalchemy.types import TypeDecorator, TypeEngine
+
+from core.report.columns import columns_of
 
 
 class UtcDateTime(TypeDecorator[datetime]):
@@ -61,3 +64,25 @@ class Base(DeclarativeBase):
         dict[str, Any]: JSON(none_as_null=True),
         list[str]: JSON,
     }
+
+
+_TYPES: Mapping[type, type[TypeEngine[Any]]] = {int: Integer, float: Double, str: String}
+_T = TypeVar("_T", bound=type[Base])
+
+
+def with_columns_of(declared: type[Any], also_null: Collection[str] = ()) -> Callable[[_T], _T]:
+    """A decorator that gives a table the columns of a published row, as far as the class does not name them itself.
+
+    Args:
+        declared: the dataclass that declares the published table; see `core.report.columns`.
+        also_null: columns that may be empty in rows of a former version, though the declaration says otherwise.
+    """
+
+    def add(table: _T) -> _T:
+        for column in columns_of(declared):
+            if column.name not in table.__table__.columns:
+                nullable = column.nullable or column.name in also_null
+                setattr(table, column.name, mapped_column(_TYPES[column.kind], nullable=nullable))
+        return table
+
+    return add

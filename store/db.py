@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -13,6 +12,7 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
+from filelock import FileLock
 from sqlalchemy import URL, Connection, Engine, create_engine, event, func, make_url, select
 from sqlalchemy.exc import DatabaseError, OperationalError
 from sqlalchemy.orm import Session
@@ -148,8 +148,7 @@ def open_sqlite(path: Path) -> Database:
         DiskFull: there is no space for it.
         BadInput: it is damaged, or of a newer version of this program.
     """
-    with path.with_name(path.name + ".lock").open("w") as guard:
-        fcntl.flock(guard, fcntl.LOCK_EX)
+    with FileLock(path.with_name(path.name + ".lock"), fallback_to_soft=False):
         try:
             upgrade(sqlite_url(path))
         except DatabaseError as error:

@@ -1,4 +1,7 @@
-"""Inspections as a whole: create, reopen, forget, look at, clean up. Leases are `store.plan`'s."""
+"""Inspections as a whole: created, found, started again, deleted, and their results left out of a new plan.
+
+Leases on their tasks are `store.plan`'s.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import delete, select
+from sqlalchemy import delete, select, update
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
@@ -16,11 +19,11 @@ from core.states import InspectionState, TaskState
 from store.advance import advance
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
-from store.leasing import input_files, lock_inspection, put_result
+from store.leasing import changed, input_files, lock_inspection, put_result
 from store.models import ACTIVE_INSPECTION, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, InspectionView, Result, TaskView
-from store.rows import clear_rows, replace_rows
+from store.tables import clear_rows, replace_rows
 
 
 def input_digest(files: InputFiles) -> str:
@@ -215,3 +218,38 @@ def _task_view(task: Task, path: str | None) -> TaskView:
         error=task.error,
         path=path if task.state == TaskState.SUCCEEDED else None,
     )
+
+
+def mark_deleted(db: Database, inspection_id: str) -> bool:
+    """Mark an inspection as deleted; False when it was already."""
+    with db.write() as session:
+        where = (Inspection.id == inspection_id, Inspection.deleted_at.is_(None))
+        return changed(session, update(Inspection).where(*where).values(deleted_at=db.now(session)))
+
+
+def forget_from(inspections: Inspections, inspection_id: str, stage: str) -> list[str]:
+    """Forget the results of `stage` and of all that follow it in this plan.
+
+    Returns:
+        Their paths in the result store; whoever calls removes the files, afterwards and never before.
+
+    Raises:
+        BadInput: `conflict` when another inspection that is not over builds on one of them.
+    """
+    stages = inspections.stages_from(inspection_id, stage)
+    own = [task for task in inspections.tasks(inspection_id) if task.stage in stages and task.fingerprint]
+    fingerprints = {task.fingerprint for task in own if task.fingerprint}
+    shared = (
+        select(Task.id)
+        .join(Inspection, Inspection.id == Task.inspection_id)
+        .where(Task.inspection_id != inspection_id, Task.fingerprint.in_(fingerprints))
+        .where(Inspection.state.in_(ACTIVE_INSPECTION))
+        .limit(1)
+    )
+    with inspections.db.read() as session:
+        if session.scalar(shared) is not None:
+            message = f"another inspection that is not over uses the same results of '{stage}'"
+            raise BadInput(message, code="conflict", where="from_stage")
+    paths = inspections.known_results()
+    inspections.forget(fingerprints)
+    return [paths[name] for name in sorted(fingerprints) if name in paths]

@@ -18,7 +18,7 @@ from typing import Any
 
 from core.errors import BadInput
 from core.task_key import key_of_stem
-from store.artifacts import ArtifactStore
+from store.files import ArtifactStore
 
 FOLDER = "logs"
 _SUFFIX = ".log"

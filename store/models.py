@@ -8,11 +8,14 @@ from typing import Any
 from sqlalchemy import BigInteger, ForeignKey, Index, String, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
+from core.mapping import rows as declared_detections
+from core.report import rows as declared_cases
 from core.states import AttemptOutcome, InspectionState, TaskState
+from core.timeline import rows as declared_events
 
 # Whoever takes the base class from here has all tables in its metadata.
 from store.columns import Base as Base
-from store.columns import Choice
+from store.columns import Choice, with_columns_of
 
 LEASABLE = (InspectionState.QUEUED, InspectionState.RUNNING)
 """States of an inspection whose tasks may start."""
@@ -149,7 +152,7 @@ class Result(Base):
     digest: Mapped[str] = mapped_column(String(64))
     facts: Mapped[dict[str, Any]]
     rows: Mapped[dict[str, Any]]
-    """What the table rows of this result are made from; see `store.rows`."""
+    """What the table rows of this result are made from; see `store.tables`."""
     path: Mapped[str]
     seconds: Mapped[float]
     peak_rss_bytes: Mapped[int] = mapped_column(BigInteger)
@@ -163,6 +166,11 @@ class _Row:
     task_key: Mapped[str] = mapped_column(String(128))
 
 
+# The columns of the three published tables are those of the declarations. A class names a column only where the
+# database adds something to it: a key, a length, a default, or an attribute that queries are written with.
+
+
+@with_columns_of(declared_cases.CaseRow)
 class CaseRow(_Row, Base):
     """A row of cases.csv."""
 
@@ -170,67 +178,32 @@ class CaseRow(_Row, Base):
 
     name: Mapped[str] = mapped_column(String(64), primary_key=True)
     kind: Mapped[str] = mapped_column(String(16))
-    start: Mapped[int]
-    end: Mapped[int]
     status: Mapped[str] = mapped_column(String(16))
-    reason: Mapped[str | None]
-    frames: Mapped[int]
-    models: Mapped[int]
-    registered_images: Mapped[int]
-    points3D: Mapped[int]  # noqa: N815 - the contract's column
-    mean_reprojection_error_px: Mapped[float | None]
-    median_reprojection_error_px: Mapped[float | None]
-    seconds: Mapped[float]
     start_mode: Mapped[str | None] = mapped_column(String(16))
     selected: Mapped[int] = mapped_column(default=0)
     vetoed: Mapped[int] = mapped_column(default=0)
 
 
+@with_columns_of(declared_detections.DetectionRow, also_null=("time_s", "support_points"))
 class DetectionRow(_Row, Base):
     """A row of detections.csv."""
 
     __tablename__ = "detections"
 
     id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
-    key: Mapped[str]
-    time_s: Mapped[float | None]
     label: Mapped[str]
-    score: Mapped[float | None]
-    box_x1: Mapped[float]
-    box_y1: Mapped[float]
-    box_x2: Mapped[float]
-    box_y2: Mapped[float]
-    frame_index: Mapped[int | None]
     outcome: Mapped[str] = mapped_column(String(16))
     reason: Mapped[str | None] = mapped_column(String(64))
     rung: Mapped[str | None] = mapped_column(String(16))
-    support_points: Mapped[int | None]
-    x: Mapped[float | None]
-    y: Mapped[float | None]
-    z: Mapped[float | None]
-    confidence: Mapped[float | None]
-    blade: Mapped[str | None]
-    defect_id: Mapped[int | None]
-    model: Mapped[int | None]
 
 
+@with_columns_of(declared_events.EventRow, also_null=("defect_id", "x", "y", "z", "radius"))
 class EventRow(_Row, Base):
     """A row of timeline.csv."""
 
     __tablename__ = "events"
 
     event_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
-    defect_id: Mapped[int | None]
-    label: Mapped[str]
-    start_s: Mapped[float]
-    end_s: Mapped[float]
-    n_detections: Mapped[int]
-    n_frames: Mapped[int]
-    x: Mapped[float | None]
-    y: Mapped[float | None]
-    z: Mapped[float | None]
-    radius: Mapped[float | None]
-    confidence: Mapped[float | None]
 
 
 class DefectRow(_Row, Base):
@@ -262,7 +235,7 @@ class TableVersion(Base):
 
     inspection_id: Mapped[str] = _inspection_key()
     name: Mapped[str] = mapped_column(String(16), primary_key=True)
-    """As `store.rows` calls the table, e.g. ``events``."""
+    """Name of the `store.tables.Table`, e.g. ``events``."""
     version: Mapped[int]
     """Grows with every change; without a row it is 0."""
 

@@ -2,7 +2,8 @@
 
 Every call is one transaction. Who changes a plan holds the inspection's row first (on SQLite: the write
 lock), so there is one order of locks and no deadlock. A lease carries a fence, which grows with every
-lease of the task; heartbeats and results count only under the newest.
+lease of the task; heartbeats and results count only under the newest. Where a result has vanished, by accident
+or by hand, the task that made it runs again.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import func, select, update
+from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
 from core.states import AttemptOutcome, InspectionState, TaskState
@@ -30,8 +31,8 @@ from store.leasing import (
     put_result,
 )
 from store.models import LEASABLE, Inspection, Task
+from store.models import Result as ResultRow
 from store.records import Lease, Result
-from store.remaking import remake, vanished
 
 
 @dataclass(frozen=True)
@@ -285,3 +286,30 @@ def _lose(task: Task, now: datetime) -> None:
         "where": task.key,
         "retryable": False,
     }
+
+
+def vanished(session: Session, task: Task) -> list[str]:
+    """Keys of the dependencies of a task that have succeeded but whose result is unknown."""
+    query = (
+        select(Task.key)
+        .outerjoin(ResultRow, ResultRow.fingerprint == Task.fingerprint)
+        .where(Task.inspection_id == task.inspection_id, Task.key.in_(task.depends))
+        .where(Task.state == TaskState.SUCCEEDED, ResultRow.fingerprint.is_(None))
+    )
+    return list(session.scalars(query))
+
+
+def remake(session: Session, inspection: Inspection, keys: Collection[str]) -> None:
+    """Set tasks back to before they ran, and what is about to build on them; `advance` then goes on from there.
+
+    What was built on them already stays: the same input gives the same result again, under the same name.
+    """
+    tasks = session.scalars(select(Task).where(Task.inspection_id == inspection.id)).all()
+    for task in tasks:
+        if task.key in keys and task.state == TaskState.SUCCEEDED:
+            session.execute(delete(ResultRow).where(ResultRow.fingerprint == task.fingerprint))
+            task.state, task.reused, task.attempt = TaskState.WAITING, False, 0
+            task.facts, task.digest, task.ended_at, task.progress = None, None, None, 0.0
+        elif task.state == TaskState.RUNNABLE and not set(keys).isdisjoint(task.depends):
+            task.state = TaskState.WAITING
+    session.flush()

@@ -1,4 +1,4 @@
-"""Who publishes an inspection, and the one transaction that makes its files and rows the ones that are shown.
+"""Publication: who publishes an inspection, the transaction that shows its files and rows, and what is shown then.
 
 A plan that is over is published once per attempt. Whoever does it holds a lease with a fence, as on a task;
 files go into the store first, under the attempt's own folder, and count from the commit on.
@@ -9,17 +9,35 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from pathlib import PurePosixPath
 from typing import Any
 
 from sqlalchemy import ColumnElement, delete, or_, select, update
 from sqlalchemy.orm import Session
 
-from store.artifacts import Stored
 from store.db import Database
+from store.files import Stored
 from store.leasing import changed, lock_inspection
-from store.media import media_type
 from store.models import ACTIVE_INSPECTION, Artifact, Inspection
-from store.rows import replace_rows
+from store.tables import replace_rows
+
+_BY_SUFFIX = {
+    ".bin": "application/octet-stream",
+    ".csv": "text/csv; charset=utf-8",
+    ".glb": "model/gltf-binary",
+    ".html": "text/html; charset=utf-8",
+    ".jpg": "image/jpeg",
+    ".json": "application/json",
+    ".pdf": "application/pdf",
+    ".ply": "application/ply",
+    ".png": "image/png",
+    ".txt": "text/plain; charset=utf-8",
+}
+
+
+def media_type(path: str) -> str:
+    """By the name's suffix; bytes without a known one are just bytes."""
+    return _BY_SUFFIX.get(PurePosixPath(path).suffix.lower(), "application/octet-stream")
 
 
 def artifact_prefix(inspection_id: str, attempt: int) -> str:
@@ -87,7 +105,7 @@ class Publishing:
 
         Args:
             files: by path of the contract.
-            rows: see `store.rows.replace_rows`.
+            rows: see `store.tables.replace_rows`.
 
         Returns:
             False when the lease was lost; nothing has changed then.
@@ -142,3 +160,39 @@ def _replace_artifacts(session: Session, ticket: Ticket, files: Sequence[Stored]
         )
         for file in files
     )
+
+
+@dataclass(frozen=True)
+class ArtifactView:
+    """One published file."""
+
+    path: str
+    key: str
+    """Where it lies in the artifact store."""
+    size: int
+    sha256: str
+    media_type: str
+    created_at: datetime
+
+
+@dataclass(frozen=True)
+class ArtifactRows:
+    """Published files of all inspections."""
+
+    db: Database
+
+    def all(self, inspection_id: str) -> Sequence[ArtifactView]:
+        """Every published file of an inspection, by path."""
+        query = select(Artifact).where(Artifact.inspection_id == inspection_id).order_by(Artifact.path)
+        with self.db.read() as session:
+            return [_view(row) for row in session.scalars(query)]
+
+    def find(self, inspection_id: str, path: str) -> ArtifactView | None:
+        """One published file; None when this inspection has none of that name."""
+        with self.db.read() as session:
+            row = session.get(Artifact, (inspection_id, path))
+        return _view(row) if row is not None else None
+
+
+def _view(row: Artifact) -> ArtifactView:
+    return ArtifactView(row.path, row.key, row.size, row.sha256, row.media_type, row.created_at)

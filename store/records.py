@@ -56,7 +56,7 @@ class Result:
     seconds: float
     peak_rss_bytes: int
     rows: Mapping[str, Any] = field(default_factory=dict)
-    """What table rows are made from; see `store.rows`."""
+    """What table rows are made from; see `store.tables`."""
 
 
 @dataclass(frozen=True)

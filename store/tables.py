@@ -1,4 +1,7 @@
-"""Rows of an inspection's tables as others read them: columns of the contract, filtered, in pages.
+"""Tables of an inspection: made from the files of a result, written with the end of its task, read in pages.
+
+A result carries its rows as JSON lists under the table's name, made from the very files that it seals, so rows
+and files cannot disagree, and a result that is used again brings its rows along.
 
 Every page is read in a short transaction of its own. Tables count their changes (`TableVersion`), and a page that
 follows another is read only while the count is the same: what a reader puts together was there at one moment.
@@ -6,21 +9,26 @@ follows another is read only while the count is the same: what a reader puts tog
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, literal, select, tuple_
+from sqlalchemy import ColumnElement, CursorResult, Select, delete, insert, inspect, literal, select, tuple_, update
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
 from core.mapping.rows import DETECTION_COLUMNS
 from core.report.rows import CASE_COLUMNS
+from core.stage import Facts
+from core.task_key import piece_of, stage_of
+from core.timeline.rows import TIMELINE_COLUMNS
 from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database
+from store.leasing import changed
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow, TableVersion
-
-EVENT_COLUMNS = tuple(c.name for c in EventRow.__table__.columns if c.name not in ("inspection_id", "task_key"))
 
 
 @dataclass(frozen=True)
@@ -28,7 +36,7 @@ class Table:
     """One table: where its rows are, what is shown of them, in which order."""
 
     name: str
-    """As `store.rows` calls it."""
+    """Key of its rows in a result."""
     model: type[Base]
     columns: tuple[str, ...]
     """As shown; the record alone for defects."""
@@ -43,7 +51,7 @@ class Table:
 
 CASES = Table("cases", CaseRow, CASE_COLUMNS, ("kind", "name"))
 DETECTIONS = Table("detections", DetectionRow, DETECTION_COLUMNS, ("id",))
-TIMELINE = Table("events", EventRow, EVENT_COLUMNS, ("event_id",))
+TIMELINE = Table("events", EventRow, TIMELINE_COLUMNS, ("event_id",))
 METRICS = Table("metrics", MetricRow, ("name", "value"), ("name",))
 DEFECTS = Table("defects", DefectRow, ("record",), ("id",))
 DEFECT_COLUMNS = (
@@ -225,3 +233,103 @@ def flat_defect(record: Mapping[str, Any]) -> dict[str, Any]:
         "n_detections": len(record.get("detections") or ()),
         "blade": record.get("blade"),
     }
+
+
+_PER_TASK: dict[str, type[Base]] = {"cases": CaseRow, "metrics": MetricRow}
+"""Tables that many tasks share: a task replaces what it wrote itself."""
+_WHOLE: dict[str, type[Base]] = {"detections": DetectionRow, "events": EventRow, "defects": DefectRow}
+"""Tables that one task writes whole: the last one holds."""
+_TABLES = {**_PER_TASK, **_WHOLE}
+
+
+def write_rows(session: Session, inspection_id: str, task_key: str, rows: Mapping[str, Any]) -> None:
+    """Replace the rows of one task; keys that a table does not know are left to the files."""
+    for name in _PER_TASK:
+        _replace(session, name, inspection_id, task_key, rows.get(name, ()), only_of_task=True)
+    for name in _WHOLE:
+        if name in rows:
+            _replace(session, name, inspection_id, task_key, rows[name])
+
+
+def replace_rows(session: Session, inspection_id: str, rows: Mapping[str, Any]) -> None:
+    """Replace whole tables of an inspection: those that `rows` names."""
+    for name, values in rows.items():
+        _replace(session, name, inspection_id, "", values)
+
+
+def clear_rows(session: Session, inspection_id: str) -> None:
+    """Remove every row of an inspection."""
+    for name in _TABLES:
+        _replace(session, name, inspection_id, "", ())
+
+
+def _replace(
+    session: Session, name: str, inspection_id: str, task_key: str, rows: Any, *, only_of_task: bool = False
+) -> None:
+    """Replace rows of one table; the caller has locked the inspection, so versions are counted one by one."""
+    table = _TABLES[name]
+    columns = table.__table__.columns
+    statement = delete(table).where(columns["inspection_id"] == inspection_id)
+    if only_of_task:
+        statement = statement.where(columns["task_key"] == task_key)
+    removed = session.execute(statement)
+    assert isinstance(removed, CursorResult)  # what every DELETE gives
+    values = _values(table, inspection_id, task_key, rows)
+    if values:
+        session.execute(insert(table), values)
+    if values or removed.rowcount:
+        _count_change(session, name, inspection_id)
+
+
+def _values(table: type[Base], inspection_id: str, task_key: str, rows: Any) -> list[dict[str, Any]]:
+    names = {column.key for column in inspect(table).column_attrs}
+    owner = {"inspection_id": inspection_id, "task_key": task_key}
+    return [{**{key: value for key, value in row.items() if key in names}, **owner} for row in rows]
+
+
+def _count_change(session: Session, name: str, inspection_id: str) -> None:
+    where = (TableVersion.inspection_id == inspection_id, TableVersion.name == name)
+    if not changed(session, update(TableVersion).where(*where).values(version=TableVersion.version + 1)):
+        session.execute(insert(TableVersion).values(inspection_id=inspection_id, name=name, version=1))
+
+
+_CASE_STAGES = ("coarse", "refine")
+_TABLE_FILES: dict[str, dict[str, str]] = {
+    "map_defects": {"detections": "detections.json"},
+    "timeline": {"detections": "detections.json", "events": "timeline.json", "defects": "defects.json"},
+}
+
+
+def rows_of(key: str, facts: Facts, folder: Path) -> dict[str, Any]:
+    """Rows by table: metrics of every task, cases of the search, tables of the mapping stages.
+
+    Tables of further models are joined with the first one's when the run is published.
+    """
+    stage = stage_of(key)
+    rows: dict[str, Any] = {"metrics": _metrics(facts)}
+    if stage in _CASE_STAGES and "name" in facts:
+        rows["cases"] = [facts]
+    files = {} if piece_of(key) else _TABLE_FILES.get(stage, {})
+    for table, name in files.items():
+        path = folder / name
+        if path.is_file():
+            rows[table] = json.loads(path.read_text(encoding="utf-8"))
+    if "defects" in rows:
+        rows["defects"] = defect_rows(rows["defects"])
+    return rows
+
+
+def defect_rows(records: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of the table of defects: the whole record, and what is asked for most as columns."""
+    rows = []
+    for record in records:
+        x, y, z = record.get("centroid") or (None, None, None)
+        rows.append({"id": record["id"], "label": record["label"], "x": x, "y": y, "z": z, "record": record})
+    return rows
+
+
+def _metrics(facts: Facts) -> list[dict[str, Any]]:
+    numbers = {
+        name: value for name, value in facts.items() if isinstance(value, int | float) and not isinstance(value, bool)
+    }
+    return [{"name": name, "value": float(value)} for name, value in numbers.items() if math.isfinite(value)]

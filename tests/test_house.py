@@ -6,6 +6,7 @@ import ast
 import json
 import re
 import subprocess
+import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,7 +24,8 @@ from tests import conftest
 
 ROOT = Path(__file__).parents[1]
 MAX_LINES = 400
-TEXT = {".py", ".md", ".toml", ".yml", ".yaml", ".sh", ".ini", ".cfg", ".lock", ".html", ".mako", ""}
+PACKAGES = ("core", "store", "worker", "api", "cli", "bench")
+TEXT = {".py", ".md", ".toml", ".yml", ".yaml", ".sh", ".ini", ".cfg", ".lock", ".html", ".css", ".js", ".mako", ""}
 MACHINE_PATHS = re.compile(r"(?<![\w.])/(?:work|root|opt|home/\w+|tmp/\w+)/")
 HOSTS = re.compile(r"https?://[\w.-]*(?:pypi|pythonhosted|debian|npmjs)[\w.-]*", re.IGNORECASE)
 UNFINISHED = re.compile(
@@ -151,6 +153,29 @@ def test_readme_is_short_and_its_limits_begin_with_the_missing_video() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert readme.count("\n") <= 120
     assert "## Limits\n- **No real video of turbine blades has been available.**" in readme
+
+
+def test_templates_are_part_of_the_package() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    declared = project["tool"]["setuptools"]["package-data"]
+    shipped = {
+        path
+        for package, patterns in declared.items()
+        for pattern in patterns
+        for path in ROOT.glob(f"{package.replace('.', '/')}/{pattern}")
+    }
+    templates = {path for path in tracked() if path.parent.name == "templates"}
+    assert len(templates) >= 4
+    assert templates <= shipped
+
+
+def test_html_is_written_by_templates_only() -> None:
+    found = [
+        path.name
+        for path, text in texts()
+        if path.suffix == ".py" and path.relative_to(ROOT).parts[0] in PACKAGES and re.search(r"</\w+>", text)
+    ]
+    assert not found
 
 
 def test_lock_is_complete_and_plain() -> None:

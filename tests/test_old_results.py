@@ -25,15 +25,15 @@ from cli.main import main
 from core.errors import BadInput
 from core.settings import make_settings
 from store.db import open_sqlite
+from store.factory import open_artifacts, open_database
 from store.models import ApiKey
-from store.opening import open_artifacts, open_database
 from store.settings import DeploymentSettings
 from tests.old_release import answers, missing, unpack
 from tests.worker import fake_stages
 from tests.worker.deployment import Deployment
 from tests.worker.test_serve import serve
-from worker.outcome import Event
-from worker.run import run_inspection
+from worker.events import Event
+from worker.local_run import run_inspection
 
 OF_THE_SERVER = re.compile(r"\.body\.request_id: |\.versions\.")
 """Every request has an id of its own, and an inspection tells the versions of the program that answers."""

@@ -8,12 +8,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from store.artifacts import ArtifactStore
-from store.inputs import LocalInputs
+from store.files import ArtifactStore, LocalInputs
+from store.housekeeping import Retention
 from store.inspections import Inspections
 from store.json_log import logger
 from store.plan import Plan
-from store.retention import Retention
 from worker.mirror import MirroredResults
 from worker.results import ResultFolders
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from core.states import AttemptOutcome
 from core.task_key import file_stem
-from store.artifacts import ArtifactStore
+from store.files import ArtifactStore
 from store.records import Lease
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection
 from contextlib import suppress
 from pathlib import Path
 
-from store.artifacts import ArtifactStore
+from store.files import ArtifactStore
 from store.settings import DeploymentSettings
 from worker.results import MANIFEST, Manifest, ResultFolders, age_s
 

@@ -1,4 +1,4 @@
-"""A chore that a server repeats, in a thread of its own: often enough, at once when nudged, and for ever."""
+"""Periodic tasks of a server, each in a thread of its own: at fixed intervals, and at once when nudged."""
 
 from __future__ import annotations
 
@@ -47,5 +47,6 @@ class Periodic:
             self._due.clear()
             try:
                 self.work()
-            except Exception as error:  # noqa: BLE001 - a chore must outlive whatever is wrong at the moment
+            except Exception as error:  # noqa: BLE001 - the next round may find that all is well
+                # The names in the log are documented (docs/operations/stuck-jobs.md).
                 _log.warning("chore_failed", chore=self.name, reason=f"{type(error).__name__}: {error}")

@@ -1,14 +1,24 @@
-"""What a run that ended publishes, whatever it reached: files of its results and tables of its report."""
+"""Publication of what a run reached: collected from its results, put into a folder or into the artifact store.
+
+A local run publishes into its folder: files first, tables then, `summary.json` last; what an earlier run published and
+this one did not is removed. A server's plans become artifacts in the store and rows in the database; a crash at any
+point leaves an inspection that is still to be published, and files that the next publisher writes again, byte for byte,
+under the same names.
+"""
 
 from __future__ import annotations
 
+import json
+import shutil
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+import threading
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from core.errors import Cancelled
 from core.flags import Verdict
 from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case
 from core.report.build import Report, build_report, write_tables
@@ -19,10 +29,15 @@ from core.stage import Facts
 from core.states import TaskState, run_state
 from core.task_key import key_of
 from core.versions import all_versions
+from store.files import ArtifactStore, Stored
+from store.inspections import Inspections
+from store.json_log import logger
 from store.models import OVER_TASK
+from store.publishing import Publishing, Ticket
 from store.records import InspectionView, TaskView
+from store.tables import defect_rows
+from worker.periodic import Periodic
 from worker.results import MANIFEST, ResultFolders
-from worker.rows import defect_rows
 
 
 @dataclass(frozen=True)
@@ -143,3 +158,155 @@ def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Fac
         if folder is not None and (folder / inner).exists():
             return folder / inner
     return None
+
+
+_LIST = "published.json"
+
+
+def publish(record: RunRecord, folders: Mapping[str, Path], out: Path, hidden: Path) -> Report:
+    """Write the published folder of a run that ended.
+
+    Args:
+        folders: result folder of every finished task by key.
+        out: the published folder.
+        hidden: this program's own folder inside it, on the same disk.
+    """
+    store = ArtifactStore(out)
+    known = _load(hidden / _LIST)
+    # One run at a time works here: what a killed one left is nobody's.
+    for left in hidden.glob("tables-*"):
+        shutil.rmtree(left, ignore_errors=True)
+    with collected(record, folders, hidden) as wanted:
+        # Its presence says that everything else is of one run, so it goes first and comes last.
+        store.remove("summary.json")
+        published = {path: _put(store, out, path, source, known.get(path)) for path, source in wanted.files.items()}
+        # Listed before anything is removed or the tables are written: a crash in between forgets no file.
+        _save(hidden / _LIST, {**known, **published})
+        for path, source in wanted.tables.items():
+            stored = store.put(path, source)
+            published[path] = {"size": stored.size, "sha256": stored.sha256}
+    for path in sorted(set(known) - set(published)):
+        store.remove(path)
+    _save(hidden / _LIST, published)
+    return wanted.report
+
+
+def _put(store: ArtifactStore, out: Path, path: str, source: Path, known: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Copy a file unless the very same is there; a copy, because people edit what lies in their folder."""
+    target = out / path
+    origin = str(source.relative_to(out)) if source.is_relative_to(out) else str(source)
+    if known and known.get("origin") == origin and target.is_file() and known.get("mtime_ns") == _mtime(target):
+        return dict(known)
+    stored: Stored = store.put(path, source)
+    return {"size": stored.size, "sha256": stored.sha256, "origin": origin, "mtime_ns": _mtime(target)}
+
+
+def _mtime(path: Path) -> int:
+    return path.stat().st_mtime_ns
+
+
+def _load(path: Path) -> dict[str, dict[str, Any]]:
+    if not path.is_file():
+        return {}
+    known: dict[str, dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))
+    return known
+
+
+def _save(path: Path, published: Mapping[str, Mapping[str, Any]]) -> None:
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(published, sort_keys=True, indent=1), encoding="utf-8")
+    ArtifactStore(path.parent).put(path.name, part)
+    part.unlink()
+
+
+_log = logger("bladeatlas.publisher")
+
+
+@dataclass(frozen=True)
+class Publisher:
+    """Publishes one inspection after the other."""
+
+    publishing: Publishing
+    inspections: Inspections
+    results: ResultFolders
+    store: ArtifactStore
+    scratch: Path
+    """Local folder for tables until they are stored."""
+    owner: str
+    heartbeat_s: float = 10.0
+
+    def publish_all(self) -> int:
+        """Publish whatever is due; returns how many inspections."""
+        done = 0
+        while (ticket := self.publishing.take(self.owner)) is not None:
+            try:
+                done += self.publish(ticket)
+            except Exception:  # noqa: BLE001 - whatever is wrong with one must not stop the others
+                # Its lease runs out by itself: the others first, then this one again.
+                _log.exception("publishing_failed", inspection=ticket.inspection_id)
+        return done
+
+    def publish(self, ticket: Ticket) -> bool:
+        """Publish one attempt; False when its lease was lost on the way."""
+        view, tasks = self.inspections.get(ticket.inspection_id), self.inspections.tasks(ticket.inspection_id)
+        try:
+            with self._kept(ticket) as lost:
+                record, folders = record_of(view, tasks, self.results)
+                with collected(record, folders, self.scratch) as wanted:
+                    stored = self._store_files(ticket, wanted, lost)
+            accepted = self.publishing.finish(ticket, stored, report_rows(wanted.report))
+        except Cancelled:
+            accepted = False
+        if accepted:
+            self._sweep(ticket, stored)
+        _log.info(
+            "published" if accepted else "publishing_refused",
+            inspection=ticket.inspection_id,
+            inspection_attempt=ticket.attempt,
+            state=view.state,
+        )
+        return accepted
+
+    @contextmanager
+    def _kept(self, ticket: Ticket) -> Iterator[threading.Event]:
+        """The lease, renewed in the background; the event says that it was lost."""
+        lost = threading.Event()
+
+        def renew() -> None:
+            if not self.publishing.renew(ticket):
+                lost.set()
+
+        renewal = Periodic("publish lease", renew, self.heartbeat_s)
+        renewal.start()
+        try:
+            yield lost
+        finally:
+            renewal.stop()
+
+    def _store_files(self, ticket: Ticket, wanted: Collection, lost: threading.Event) -> list[Stored]:
+        known = self._manifests(wanted.files.values())
+        stored = []
+        for path, source in (*wanted.files.items(), *wanted.tables.items()):
+            if lost.is_set():
+                raise Cancelled("somebody else publishes this", where=ticket.inspection_id)
+            key = f"{ticket.prefix}/{path}"
+            kept = self.store.link(key, source, known[source]) if source in known else self.store.put(key, source)
+            stored.append(Stored(path, kept.size, kept.sha256))
+        return stored
+
+    def _manifests(self, sources: Iterable[Path]) -> dict[Path, Stored]:
+        """Size and hash of files of results, from their manifests."""
+        folders = {Path(*source.relative_to(self.results.root).parts[:2]) for source in sources}
+        known = {}
+        for folder in folders:
+            manifest = self.results.find(folder.parent.name, folder.name)
+            for name, entry in manifest.files.items() if manifest is not None else ():
+                known[self.results.path(folder) / name] = Stored(name, int(entry["size"]), str(entry["sha256"]))
+        return known
+
+    def _sweep(self, ticket: Ticket, stored: list[Stored]) -> None:
+        """Remove what earlier attempts, or a publisher that was cut off, put into the inspection's folder."""
+        shown = {f"{ticket.prefix}/{file.path}" for file in stored}
+        for key in self.store.list(f"inspections/{ticket.inspection_id}"):
+            if key not in shown:
+                self.store.remove(key)

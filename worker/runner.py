@@ -1,4 +1,4 @@
-"""The runner: lease a task, execute its stage in a child process, commit the result; N of them side by side.
+"""The runner: lease a task, execute its stage in a child process, commit the result, and keep its lease alive.
 
 Local runs and embedded servers use these threads; a queue's task calls `TaskRunner.run` for the same.
 """
@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
@@ -16,24 +18,25 @@ from core.errors import BladeAtlasError, DiskFull, ResourceError
 from core.settings import Settings
 from core.states import AttemptOutcome
 from core.video.limits import MAX_FRAME_PIXELS
-from store.artifacts import UNREACHABLE
 from store.disk import NO_SPACE
-from store.inputs import LocalInputs
+from store.files import UNREACHABLE, LocalInputs
 from store.json_log import logger
 from store.plan import Plan
 from store.records import Lease, Result
+from store.retry import retried_until
 from store.settings import available_cores
+from store.tables import rows_of
 from worker.logs import TaskLogs
-from worker.patience import patiently
-from worker.process import Ended, StopReason, TaskProcess
 from worker.results import Manifest, ResultFolders
-from worker.rows import rows_of
+from worker.task import Ended, StopReason, TaskProcess
 
 T = TypeVar("T")
 _log = logger("bladeatlas.tasks")
 _SAME_AGAIN = ("oom", "timeout")
 """Codes of errors that a second attempt would meet again, after the same time and to the same harm of others."""
 _STORE_PAUSE_S = 5.0
+TICK_S = 0.5
+"""How soon a cancellation, the end of the plan or work of others is noticed."""
 
 
 class Observer(Protocol):
@@ -102,7 +105,7 @@ class TaskRunner:
         missing = [key for key, path in lease.inputs.items() if not self.results.have(path)]
         if missing:
             _log.warning("results_vanished", **ids(lease), missing=missing)
-            remade = self._patiently(lambda: self.plan.remake(lease, missing))
+            remade = self._retried(lambda: self.plan.remake(lease, missing))
             return AttemptOutcome.RELEASED if remade else AttemptOutcome.REFUSED, None
         temporary = self.results.begin(lease.stage, lease.fingerprint)
         try:
@@ -158,14 +161,14 @@ class TaskRunner:
 
     def _complete(self, lease: Lease, manifest: Manifest, peak_rss_bytes: int) -> AttemptOutcome:
         result = result_of(manifest, self.results, peak_rss_bytes=peak_rss_bytes)
-        accepted = self._patiently(lambda: self.plan.complete(lease, result))
+        accepted = self._retried(lambda: self.plan.complete(lease, result))
         return AttemptOutcome.SUCCEEDED if accepted else AttemptOutcome.REFUSED
 
     def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> AttemptOutcome:
         # A full disk would fail every other task as well, and tolerating it would spoil the result unseen.
         record = {**error.to_dict(), "stops_run": isinstance(error, DiskFull)}
         retry = error.retryable and error.code not in _SAME_AGAIN
-        return self._patiently(
+        return self._retried(
             lambda: self.plan.fail(lease, record, retry=retry, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
         )
 
@@ -178,11 +181,11 @@ class TaskRunner:
 
     def _release(self, lease: Lease) -> AttemptOutcome:
         # A lost lease is given back as well: the plan refuses it, and the attempt says so.
-        released = self._patiently(lambda: self.plan.release(lease))
+        released = self._retried(lambda: self.plan.release(lease))
         return AttemptOutcome.RELEASED if released else AttemptOutcome.REFUSED
 
-    def _patiently(self, call: Callable[[], T]) -> T:
-        return patiently(self.plan.db, call, self.interrupted)
+    def _retried(self, call: Callable[[], T]) -> T:
+        return retried_until(self.interrupted, self.plan.db, call)
 
 
 def ids(lease: Lease) -> dict[str, str | int]:
@@ -212,3 +215,41 @@ def result_of(manifest: Manifest, results: ResultFolders, *, peak_rss_bytes: int
         peak_rss_bytes=peak_rss_bytes,
         rows=rows_of(manifest.key, manifest.facts, results.path(path)),
     )
+
+
+@dataclass
+class Heartbeat:
+    """Heartbeats for everything that one `TaskRunner` holds."""
+
+    runner: TaskRunner
+    heartbeat_s: float = 10.0
+    stopped: threading.Event = field(default_factory=threading.Event)
+
+    def run(self) -> None:
+        """Heartbeats, expired leases of others, and word of cancellations, until stopped."""
+        plan, next_beat = self.runner.plan, 0.0
+        while not self.stopped.wait(TICK_S):
+            held = list(self.runner.held.values())
+            self._retried(partial(self._pass_on_cancellations, held))
+            if time.monotonic() >= next_beat:
+                next_beat = time.monotonic() + self.heartbeat_s
+                self._retried(partial(self._beat, held))
+                self._retried(plan.expire)
+
+    def _retried(self, call: Callable[[], T]) -> T:
+        return retried_until(self.stopped, self.runner.plan.db, call)
+
+    def _pass_on_cancellations(self, held: Sequence[Held]) -> None:
+        if held:
+            stopping = self.runner.plan.cancelling({one.lease.inspection_id for one in held})
+            for one in held:
+                if one.lease.inspection_id in stopping:
+                    one.stop = "cancelled"
+
+    def _beat(self, held: Sequence[Held]) -> None:
+        lost = self.runner.plan.heartbeat((one.lease, one.progress, one.message) for one in held)
+        gone = {lease.task_id for lease in lost}
+        for one in held:
+            # A task that ended meanwhile is no longer held, and its lease is not lost but over.
+            if one.lease.task_id in gone and self.runner.held.get(one.lease.task_id) is one:
+                one.stop = "lost"

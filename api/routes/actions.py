@@ -21,8 +21,8 @@ from api.state import state_of
 from core.fingerprint import canonical_json
 from core.settings import Settings
 from core.states import InspectionState
-from store.artifacts import ArtifactStore
-from store.forgetting import forget_from
+from store.files import ArtifactStore
+from store.inspections import forget_from
 from store.leasing import input_files
 from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state

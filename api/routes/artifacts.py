@@ -22,8 +22,8 @@ from api.finding import find_inspection
 from api.problems import not_found, responses
 from api.routes.tables import not_ready
 from api.state import state_of
-from store.artifact_rows import ArtifactRows, ArtifactView
-from store.artifacts import ArtifactStore
+from store.files import ArtifactStore
+from store.publishing import ArtifactRows, ArtifactView
 
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["results"])
 

@@ -22,7 +22,7 @@ from api.parameters import Text
 from api.problems import Refused, not_found, responses
 from api.state import State, state_of
 from api.watching import Snapshot
-from store.deletion import mark_deleted
+from store.inspections import mark_deleted
 from store.listing import Filter, list_inspections
 from store.models import ACTIVE_INSPECTION
 from store.status import Statuses

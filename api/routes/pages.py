@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import html
 from functools import cache
 from importlib import resources
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, JSONResponse
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from api.problems import not_found
 
 router = APIRouter(include_in_schema=False)
 
+_PAGES = Environment(loader=PackageLoader("api"), autoescape=True, undefined=StrictUndefined)
 _PACKAGE = "fastapi_offline"
 """Ships the released bundles of Swagger UI and Redoc; nothing else of it is used."""
 _KINDS = {
@@ -54,19 +55,13 @@ def document(request: Request) -> Response:
 @router.get("/docs")
 def docs(request: Request) -> Response:
     """The description to read and to try out."""
-    return _page(
-        request.app.title,
-        '<link rel="stylesheet" href="assets/swagger-ui.css">',
-        '<div id="docs"></div><script src="assets/swagger-ui-bundle.js"></script>'
-        f'<script src="assets/{_START}"></script>',
-    )
+    return _page("docs.html", request.app.title)
 
 
 @router.get("/redoc")
 def redoc(request: Request) -> Response:
     """The description to read."""
-    body = '<redoc spec-url="openapi.json"></redoc><script src="assets/redoc.standalone.js"></script>'
-    return _page(request.app.title, "", body)
+    return _page("redoc.html", request.app.title)
 
 
 @router.get("/assets/{name}")
@@ -84,11 +79,6 @@ def _bundled(name: str) -> bytes:
     return (resources.files(_PACKAGE) / "static" / name).read_bytes()
 
 
-def _page(title: str, head: str, body: str) -> Response:
-    # Paths are relative, so that the page works behind a prefix; the empty icon keeps browsers from asking for one.
-    text = (
-        f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1"><link rel="icon" href="data:,">{head}'
-        f"</head><body>{body}</body></html>\n"
-    )
+def _page(template: str, title: str) -> Response:
+    text = _PAGES.get_template(template).render(title=title, start=_START)
     return HTMLResponse(text, headers={"Content-Security-Policy": _POLICY, "Referrer-Policy": "no-referrer"})

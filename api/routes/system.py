@@ -17,7 +17,7 @@ from api.problems import responses
 from api.services import Services
 from api.state import state_of
 from core.versions import engine_versions, program_version
-from store.counts import count_all
+from store.monitoring import count_all
 
 router = APIRouter(tags=["system"])
 

@@ -8,6 +8,7 @@ from http import HTTPStatus
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
+from pydantic import BaseModel
 
 from api import table_schemas as schemas
 from api.auth import CallerOf
@@ -20,8 +21,8 @@ from api.parameters import Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
 from core.mapping.rows import Outcome
-from store.artifact_rows import ArtifactRows
 from store.models import ACTIVE_INSPECTION, Inspection
+from store.publishing import ArtifactRows
 from store.status import shown_state
 from store.tables import (
     CASES,
@@ -62,7 +63,7 @@ def _answer(
 
 @router.get(
     "/cases",
-    response_model=list[schemas.Case],
+    response_model=schemas.list_of(schemas.Case),
     summary="Every reconstruction case of the window search",
     responses=TABLE_RESPONSES,
 )
@@ -78,8 +79,8 @@ def cases(
     return _answer(request, caller, inspection_id, CASES, RowFilter({"kind": kind, "status": status}), asked)
 
 
-@router.get("/cases/{name}", summary="One case", responses=_ERRORS)
-def case(request: Request, caller: CallerOf, inspection_id: str, name: str) -> schemas.Case:
+@router.get("/cases/{name}", response_model=schemas.Case, summary="One case", responses=_ERRORS)
+def case(request: Request, caller: CallerOf, inspection_id: str, name: str) -> BaseModel:
     """One row of cases.csv by its name, e.g. `seg_000_0000_0180`."""
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
@@ -93,7 +94,7 @@ def case(request: Request, caller: CallerOf, inspection_id: str, name: str) -> s
 
 @router.get(
     "/metrics",
-    response_model=list[schemas.Metric],
+    response_model=schemas.list_of(schemas.Metric),
     summary="Every number that a stage found",
     responses=TABLE_RESPONSES,
 )
@@ -104,7 +105,7 @@ def metrics(request: Request, caller: CallerOf, inspection_id: str, asked: Asked
 
 @router.get(
     "/detections",
-    response_model=list[schemas.Detection],
+    response_model=schemas.list_of(schemas.Detection),
     summary="One row per detection of the annotations",
     responses=TABLE_RESPONSES,
 )
@@ -129,7 +130,7 @@ def detections(
 
 @router.get(
     "/timeline",
-    response_model=list[schemas.Event],
+    response_model=schemas.list_of(schemas.Event),
     summary="One row per event",
     responses=TABLE_RESPONSES,
 )
@@ -151,7 +152,7 @@ def timeline(
 
 @router.get(
     "/defects",
-    response_model=list[schemas.Defect],
+    response_model=schemas.list_of(schemas.Defect),
     summary="One record per physical defect",
     responses=TABLE_RESPONSES,
 )

@@ -17,8 +17,7 @@ from api.finding import is_id
 from api.problems import Refused, not_found, responses
 from api.receiving import receive_patch
 from api.state import state_of
-from store.upload_file import UploadFile
-from store.uploads import UploadView
+from store.uploads import UploadFile, UploadView
 
 VERSION = "1.0.0"
 _CONTENT_TYPE = "application/offset+octet-stream"

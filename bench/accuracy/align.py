@@ -1,10 +1,11 @@
-"""What the cameras of a model miss once a similarity has put it into the true frame."""
+"""The similarity that puts a model into the true frame, and what the cameras of the model miss then."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import pycolmap
 from numpy.typing import NDArray
 
 from core.geometry.similarity import Similarity
@@ -18,6 +19,19 @@ class PoseErrors:
 
     position_mm: F64
     rotation_deg: F64
+
+
+def align(centers: F64, true_centers: F64) -> Similarity | None:
+    """Least-squares similarity from (n, 3) camera centres of a model to the true ones.
+
+    None when it is not determined: fewer than three cameras, or all in one place or on one line.
+    """
+    if len(centers) < 3:
+        return None
+    found = pycolmap.estimate_sim3d(centers, true_centers)
+    if found is None:
+        return None
+    return Similarity(float(found.scale), np.asarray(found.rotation.matrix()), np.asarray(found.translation))
 
 
 def pose_errors(centers: F64, rotations: F64, true_centers: F64, true_rotations: F64, sim3: Similarity) -> PoseErrors:

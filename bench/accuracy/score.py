@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.accuracy.align import pose_errors
+from bench.accuracy.align import align, pose_errors
 from bench.accuracy.confidence import score_confidence
 from bench.accuracy.instances import persistence_by_record, score_defects
 from bench.accuracy.placement import place_detections, score_placements
@@ -15,7 +15,7 @@ from bench.accuracy.result import Result, ResultModel, load_result
 from bench.accuracy.surface import Reference, make_reference, score_surface
 from bench.accuracy.truth import Truth, load_truth
 from core.errors import BadInput
-from core.geometry.similarity import Similarity, umeyama
+from core.geometry.similarity import Similarity
 
 
 def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
@@ -27,7 +27,9 @@ def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
     """
     truth, result = load_truth(truth_folder), load_result(result_folder)
     _check_frames(result, truth)
-    alignments = {number: _align(model, truth) for number, model in result.models.items()}
+    alignments = {
+        number: align(model.centers, truth.centers[model.source_indices]) for number, model in result.models.items()
+    }
     needs_surface = any(model.mesh or model.cloud for model in result.models.values())
     reference = make_reference(truth) if needs_surface else None
     scored = {
@@ -51,10 +53,6 @@ def _check_frames(result: Result, truth: Truth) -> None:
     used = [index for model in result.models.values() for index in model.source_indices]
     if used and max(used) >= truth.n_frames:
         raise BadInput(f"the result uses frame {max(used)}, the truth has {truth.n_frames}", where="frames.csv")
-
-
-def _align(model: ResultModel, truth: Truth) -> Similarity | None:
-    return umeyama(model.centers, truth.centers[model.source_indices])
 
 
 def _score_model(

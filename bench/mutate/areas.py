@@ -48,7 +48,6 @@ AREAS: Mapping[str, Area] = {
             "store/plan.py",
             "store/leasing.py",
             "store/advance.py",
-            "store/remaking.py",
             "store/graph.py",
         ),
         (

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.accuracy.align import align
 from bench.accuracy.confidence import N_BINS, auroc, calibration_error
 from bench.accuracy.placement import place_detections
 from bench.accuracy.result import load_result
 from bench.accuracy.truth import load_truth
-from core.geometry.similarity import umeyama
 from core.mapping.confidence import Parts, model_right
 
 F64 = NDArray[np.float64]
@@ -47,7 +47,7 @@ def collect(bench_folder: Path, scene: str, column: str = "default") -> Sample:
     """Rows of a kept run with their parts, and whether their places are right."""
     out = bench_folder / "runs" / column / scene
     truth, result = load_truth(bench_folder / "scenes" / scene / "truth"), load_result(out)
-    alignments = {n: umeyama(m.centers, truth.centers[m.source_indices]) for n, m in result.models.items()}
+    alignments = {n: align(m.centers, truth.centers[m.source_indices]) for n, m in result.models.items()}
     placements = place_detections(result.detections, truth, alignments)
     known = {row["id"]: row["parts"] for row in json.loads((out / "mapping" / "confidence.json").read_text())}
     rows, right, model = [], [], []

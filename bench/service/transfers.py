@@ -14,8 +14,8 @@ from bench.soak.servers import free_port
 from bench.speed.timing import Row, Table, interleaved
 from core.settings import make_settings
 from core.states import InspectionState
-from store.artifacts import ArtifactStore
 from store.db import open_sqlite
+from store.files import ArtifactStore
 from store.inspections import Inspections
 from store.models import Artifact, Inspection
 from store.records import InputFiles

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import httpx
+from tenacity import Retrying, retry_if_exception, stop_after_delay, wait_fixed
 
 from core.states import InspectionState
 
 T = TypeVar("T")
-_PATIENCE_S = 120.0
+_AWAY_S = 120.0
 _PAUSE_S = 0.3
 _CHUNK = 16 << 10
 _TUS = {"Tus-Resumable": "1.0.0"}
@@ -60,7 +61,7 @@ class SoakClient:
             target = folder / item["path"]
             target.parent.mkdir(parents=True, exist_ok=True)
             target.unlink(missing_ok=True)
-            _patiently(lambda item=item, target=target: self._fetch(item, target))  # type: ignore[misc]
+            _retried(lambda item=item, target=target: self._fetch(item, target))  # type: ignore[misc]
             if hashlib.sha256(target.read_bytes()).hexdigest() != item["sha256"]:
                 wrong.append(str(item["path"]))
         return wrong
@@ -84,7 +85,7 @@ class SoakClient:
         headers = {**_TUS, "Upload-Length": str(len(data))}
         made = self._send(lambda: self._http.post("/v1/uploads", headers=headers))
         location = made.headers["Location"]
-        _patiently(lambda: self._go_on(location, data))
+        _retried(lambda: self._go_on(location, data))
         return str(location).rsplit("/", 1)[-1]
 
     def _go_on(self, location: str, data: bytes) -> bool:
@@ -112,20 +113,19 @@ class SoakClient:
         def checked() -> httpx.Response:
             return request().raise_for_status()
 
-        return _patiently(checked)
+        return _retried(checked)
 
 
-def _patiently(call: Callable[[], T]) -> T:
+def _retried(call: Callable[[], T]) -> T:
     """Repeat what a server that is away, busy or restarting did not answer."""
-    deadline = time.monotonic() + _PATIENCE_S
-    while True:
-        try:
-            return call()
-        except httpx.HTTPStatusError as error:
-            refused = error.response.status_code < httpx.codes.INTERNAL_SERVER_ERROR
-            if (refused and error.response.status_code not in (409, 423, 429)) or time.monotonic() > deadline:
-                raise
-        except httpx.TransportError:
-            if time.monotonic() > deadline:
-                raise
-        time.sleep(_PAUSE_S)
+    policy = Retrying(
+        retry=retry_if_exception(_may_pass), wait=wait_fixed(_PAUSE_S), stop=stop_after_delay(_AWAY_S), reraise=True
+    )
+    return policy(call)
+
+
+def _may_pass(error: BaseException) -> bool:
+    if isinstance(error, httpx.HTTPStatusError):
+        status = error.response.status_code
+        return status >= httpx.codes.INTERNAL_SERVER_ERROR or status in (409, 423, 429)
+    return isinstance(error, httpx.TransportError)

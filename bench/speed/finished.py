@@ -17,7 +17,7 @@ from core.task_key import stage_of
 from store.db import open_sqlite
 from store.graph import CORE_GRAPH
 from store.inspections import Inspections
-from worker.folder import RunFolder
+from worker.local_run import RunFolder
 
 
 @dataclass(frozen=True)

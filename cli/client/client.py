@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import uuid
 from collections.abc import Callable, Iterator, Mapping
 from fnmatch import fnmatchcase
@@ -14,15 +13,14 @@ import httpx
 
 from cli.client.download import download_file
 from cli.client.errors import raise_problem
+from cli.client.retry import sent_again
 from cli.client.transfers import OnBytes, Transfers, no_progress
 from cli.client.upload import upload_file
 from cli.client.values import ArtifactInfo, InspectionInfo
-from core.errors import BadInput, ResourceError
+from core.errors import BadInput
 
 _LONG_POLL_S = 30
 _TIMEOUT = httpx.Timeout(60.0, connect=10.0)
-_TRIES = 6
-_PAUSE_S = 0.5
 
 
 class Client:
@@ -69,13 +67,13 @@ class Client:
         if annotations is not None:
             body["annotations_upload"] = self.upload(annotations, on_bytes)
         headers = {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
-        response = self._patiently(lambda: self._http.post("/v1/inspections", json=body, headers=headers))
+        response = self._answer(lambda: self._http.post("/v1/inspections", json=body, headers=headers))
         self._transfers.forget(self._server, video, *([annotations] if annotations else []))
         return _inspection(response)
 
     def get(self, inspection_id: str) -> InspectionInfo:
         """The inspection as it is now."""
-        return _inspection(self._patiently(lambda: self._http.get(f"/v1/inspections/{inspection_id}")))
+        return _inspection(self._answer(lambda: self._http.get(f"/v1/inspections/{inspection_id}")))
 
     def watch(self, inspection_id: str) -> Iterator[InspectionInfo]:
         """The inspection now and after every change, until it is over."""
@@ -84,7 +82,7 @@ class Client:
         while seen.active:
             headers = {"If-None-Match": seen.etag or ""}
             url = f"/v1/inspections/{inspection_id}?wait={_LONG_POLL_S}"
-            response = self._patiently(lambda u=url, h=headers: self._http.get(u, headers=h))  # type: ignore[misc]
+            response = self._answer(lambda u=url, h=headers: self._http.get(u, headers=h))  # type: ignore[misc]
             if response.status_code != httpx.codes.NOT_MODIFIED:
                 seen = _inspection(response)
                 yield seen
@@ -99,7 +97,7 @@ class Client:
         cursor: str | None = None
         while True:
             params = {**filters, **({"cursor": cursor} if cursor else {})}
-            page = self._patiently(lambda p=params: self._http.get("/v1/inspections", params=p)).json()  # type: ignore[misc]
+            page = self._answer(lambda p=params: self._http.get("/v1/inspections", params=p)).json()  # type: ignore[misc]
             yield from (InspectionInfo.from_json(item) for item in page["inspections"])
             cursor = page["next_cursor"]
             if cursor is None:
@@ -107,7 +105,7 @@ class Client:
 
     def cancel(self, inspection_id: str) -> InspectionInfo:
         """Ask it to stop."""
-        return _inspection(self._patiently(lambda: self._http.post(f"/v1/inspections/{inspection_id}/cancel")))
+        return _inspection(self._answer(lambda: self._http.post(f"/v1/inspections/{inspection_id}/cancel")))
 
     def retry(
         self, inspection_id: str, from_stage: str = "auto", parameters: Mapping[str, Any] | None = None
@@ -120,42 +118,29 @@ class Client:
 
     def delete(self, inspection_id: str) -> None:
         """Remove it; nothing happens when it is gone already."""
-        response = self._send(lambda: self._http.delete(f"/v1/inspections/{inspection_id}"))
+        response = sent_again(lambda: self._http.delete(f"/v1/inspections/{inspection_id}"))
         if response.status_code != httpx.codes.GONE:
             raise_problem(response)
 
     def table(self, inspection_id: str, name: str, **filters: Any) -> Any:
         """A table as JSON, by the last part of its path: ``cases``, ``detections``, ``timeline``, ``quality`` ..."""
         url = f"/v1/inspections/{inspection_id}/{name}"
-        return self._patiently(lambda: self._http.get(url, params=filters)).json()
+        return self._answer(lambda: self._http.get(url, params=filters)).json()
 
     def artifacts(self, inspection_id: str) -> tuple[ArtifactInfo, ...]:
         """Its files."""
-        listed = self._patiently(lambda: self._http.get(f"/v1/inspections/{inspection_id}/artifacts")).json()
+        listed = self._answer(lambda: self._http.get(f"/v1/inspections/{inspection_id}/artifacts")).json()
         return tuple(ArtifactInfo.from_json(item) for item in listed["artifacts"])
 
     def download(self, inspection_id: str, artifact: ArtifactInfo, out: Path, on_bytes: OnBytes = no_progress) -> Path:
         """Fetch one file below `out`, or the rest of it; its SHA-256 is checked before it gets its name."""
         return download_file(self._http, f"/v1/inspections/{inspection_id}", artifact, out, on_bytes)
 
-    def _patiently(self, send: Callable[[], httpx.Response]) -> httpx.Response:
-        """Send until there is an answer that is no passing trouble; raises what it says."""
-        response = self._send(send)
+    def _answer(self, send: Callable[[], httpx.Response]) -> httpx.Response:
+        """The answer of a request that may be sent again; raises the problem that it states."""
+        response = sent_again(send)
         raise_problem(response)
         return response
-
-    def _send(self, send: Callable[[], httpx.Response]) -> httpx.Response:
-        for attempt in range(_TRIES):
-            try:
-                response = send()
-            except httpx.TransportError as error:
-                if attempt == _TRIES - 1:
-                    raise ResourceError(f"the server does not answer: {error}", code="unreachable") from None
-            else:
-                if response.status_code != httpx.codes.SERVICE_UNAVAILABLE or attempt == _TRIES - 1:
-                    return response
-            time.sleep(_PAUSE_S * 2**attempt)
-        raise AssertionError("the last try returns or raises")
 
 
 def chosen(artifacts: tuple[ArtifactInfo, ...], include: list[str]) -> list[ArtifactInfo]:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 import httpx
 
 from cli.client.errors import raise_problem
+from cli.client.retry import Transfer
 from cli.client.transfers import OnBytes
 from cli.client.values import ArtifactInfo
 from core.errors import BadInput, ResourceError
 from core.fingerprint import digest_of_file
 
 _CHUNK = 1 << 20
-_TRIES = 6
-_PAUSE_S = 0.5
 
 
 def download_file(http: httpx.Client, base: str, artifact: ArtifactInfo, out: Path, on_bytes: OnBytes) -> Path:
@@ -32,20 +30,17 @@ def download_file(http: httpx.Client, base: str, artifact: ArtifactInfo, out: Pa
         return final
     final.parent.mkdir(parents=True, exist_ok=True)
     part = final.with_name(f".{final.name}.{artifact.sha256[:16]}.part")
-    failures = 0
-    while not part.is_file() or part.stat().st_size < artifact.size:
-        before = part.stat().st_size if part.is_file() else 0
-        try:
-            _fetch(http, f"{base}/artifacts/{quote(artifact.path)}", artifact, part, on_bytes)
-        except (httpx.TransportError, ResourceError) as error:
-            moved = part.is_file() and part.stat().st_size > before
-            failures = 1 if moved else failures + 1
-            if failures >= _TRIES:
-                message = f"'{artifact.path}' was cut off: {error}; the same command goes on from there"
-                raise ResourceError(message, code="download_cut_off") from None
-            time.sleep(_PAUSE_S * 2**failures)
-        if artifact.size == 0:
-            break
+    transfer = Transfer("download", artifact.path)
+
+    def go_on() -> None:
+        while (before := _size(part)) < artifact.size or not part.is_file():
+            try:
+                _fetch(http, f"{base}/artifacts/{quote(artifact.path)}", artifact, part, on_bytes)
+            finally:
+                if _size(part) > before:
+                    transfer.moved()
+
+    transfer.run(go_on)
     if digest_of_file(part) != artifact.sha256:
         part.unlink()
         raise ResourceError(f"'{artifact.path}' arrived damaged", code="damaged_download")
@@ -53,8 +48,12 @@ def download_file(http: httpx.Client, base: str, artifact: ArtifactInfo, out: Pa
     return final
 
 
+def _size(part: Path) -> int:
+    return part.stat().st_size if part.is_file() else 0
+
+
 def _fetch(http: httpx.Client, url: str, artifact: ArtifactInfo, part: Path, on_bytes: OnBytes) -> None:
-    done = part.stat().st_size if part.is_file() else 0
+    done = _size(part)
     headers = {"Range": f"bytes={done}-", "If-Range": f'"{artifact.sha256}"'} if done else {}
     with http.stream("GET", url, headers=headers) as response:
         if response.status_code >= 400:

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import base64
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 
 from cli.client.errors import raise_problem
+from cli.client.retry import Transfer
 from cli.client.transfers import OnBytes, Transfers
 from core.errors import ResourceError
 from core.files import require_file
 
 _TUS = {"Tus-Resumable": "1.0.0"}
 _PIECE = 1 << 20
-_TRIES = 8
-_PAUSE_S = 0.5
-_LONGEST_PAUSE_S = 10.0
 _PASSING = (409, 423, 503)
 """Answers that another look at the offset may mend."""
 
@@ -31,21 +28,21 @@ def upload_file(http: httpx.Client, server: str, path: Path, transfers: Transfer
         ResourceError: the server stays away; the next call goes on from there.
     """
     size = require_file(path, "input")
-    failures, reached = 0, -1
-    while True:
-        try:
+    transfer, reached = Transfer("upload", path.name), -1
+
+    def go_on() -> str:
+        nonlocal reached
+        while True:
             url = _known(http, server, path, transfers) or _created(http, server, path, size, transfers)
             offset = _offset(http, url)
-            failures, reached = (0 if offset > reached else failures), max(offset, reached)
+            if offset > reached:
+                transfer.moved()
+                reached = offset
             if offset == size:
                 return url.rsplit("/", 1)[-1]
             _send(http, url, path, offset, size, on_bytes)
-        except (httpx.TransportError, ResourceError) as error:
-            failures += 1
-            if failures >= _TRIES:
-                message = f"the upload of '{path.name}' was cut off: {error}; the same command goes on from there"
-                raise ResourceError(message, code="upload_cut_off") from None
-            time.sleep(min(_LONGEST_PAUSE_S, _PAUSE_S * 2**failures))
+
+    return transfer.run(go_on)
 
 
 def _known(http: httpx.Client, server: str, path: Path, transfers: Transfers) -> str | None:

@@ -75,27 +75,47 @@ class DetectionRow:
     """One row of ``mapping/detections.csv``; the fields are its columns, in order."""
 
     id: int
+    """Number of the detection, from 0 in input order."""
     key: str
+    """Time key of the input, verbatim."""
     time_s: float
+    """Seconds from the first frame: the key's where keys are such seconds, else its frame's."""
     label: str
+    """Class that the detector gave."""
     score: float | None
+    """Score that the detector gave."""
     box_x1: float
+    """Left edge of the box, as a share of the source frame's width."""
     box_y1: float
+    """Upper edge of the box, as a share of the source frame's height."""
     box_x2: float
+    """Right edge of the box, as a share of the source frame's width."""
     box_y2: float
+    """Lower edge of the box, as a share of the source frame's height."""
     frame_index: int | None
     """Row of frames.csv that was used, or that shows the detection but is not registered."""
     outcome: Outcome
+    """What became of the detection."""
     reason: str | None
+    """Why it is not mapped, as a code; empty when it is."""
     rung: str | None
+    """How the place was found."""
     support_points: int
+    """Sparse points in the box that lie on the surface found; by the thesis's rules all of them."""
     x: float | None
+    """First coordinate of the place, in the world frame of `model`."""
     y: float | None
+    """Second coordinate of the place."""
     z: float | None
+    """Third coordinate of the place."""
     confidence: float | None
+    """Probability that the detection is real and its place right."""
     blade: str | None
+    """Blade that it lies on; always empty."""
     defect_id: int | None
+    """Record of defects.json that it belongs to."""
     model: int | None
+    """Number of the model whose world frame holds the place."""
 
     def to_dict(self) -> dict[str, Any]:
         """Flat JSON form, keys in the order of the columns."""

@@ -15,7 +15,7 @@ from core.report.record import RunRecord
 from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
 from core.report.summary import build_summary
 from core.report.tables import write_csv
-from core.timeline.events import TIMELINE_COLUMNS
+from core.timeline.rows import TIMELINE_COLUMNS
 
 Row = Mapping[str, Any]
 

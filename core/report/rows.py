@@ -2,34 +2,81 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from core.mapping.rows import Detection, rows_without_model
+from core.report.columns import column_names
 from core.report.record import RunRecord, TaskRecord
 from core.states import TaskState
 from core.task_key import part_of
 
 Row = dict[str, Any]
 
-FRAME_COLUMNS = ("index", "source_index", "pts", "time_s", "sha256", "role", "registered", "model")
-CASE_COLUMNS = (
-    "name",
-    "kind",
-    "start",
-    "end",
-    "status",
-    "reason",
-    "frames",
-    "models",
-    "registered_images",
-    "points3D",
-    "mean_reprojection_error_px",
-    "median_reprojection_error_px",
-    "seconds",
-    "start_mode",
-    "selected",
-    "vetoed",
-)
+
+@dataclass(frozen=True)
+class FrameRow:
+    """One row of ``frames.csv``; the fields are its columns, in order."""
+
+    index: int
+    """Number of the frame, from 0 by time, which names its image and counts in windows; frames registered afterwards
+    continue the numbers."""
+    source_index: int
+    """Decoded frame of the video, from 0."""
+    pts: int
+    """Presentation time in the stream's time base."""
+    time_s: float
+    """Seconds from the first frame of the video, by its presentation time."""
+    sha256: str
+    """SHA-256 of the decoded RGB24 frame before cropping."""
+    role: str
+    """Why it takes part: `sampled`, `annotated`, `both`, `neighbour` or `added`."""
+    registered: int
+    """1 for a frame that is in a model, else 0."""
+    model: int | None
+    """Number of that model."""
+
+
+@dataclass(frozen=True)
+class CaseRow:
+    """One row of ``cases.csv``; the fields are its columns, in order."""
+
+    name: str
+    """Name of the case: its segment, first and last frame."""
+    kind: str
+    """`coarse` or `refine`."""
+    start: int
+    """First frame of its window."""
+    end: int
+    """Frame behind the last one of its window."""
+    status: str
+    """`succeeded`, `no_model` or `failed`."""
+    reason: str | None
+    """Why it did not succeed, as a code; empty when it did."""
+    frames: int
+    """Frames of its window."""
+    models: int
+    """Models found, of which the best stands for the case."""
+    registered_images: int
+    """Registered images of the best model."""
+    points3D: int  # noqa: N815 - the contract's column
+    """Points of the best model."""
+    mean_reprojection_error_px: float | None
+    """Mean reprojection error of the best model, in pixels."""
+    median_reprojection_error_px: float | None
+    """Median reprojection error of the best model, in pixels."""
+    seconds: float
+    """Time that the case took."""
+    start_mode: str | None
+    """How the case started: `scratch`, `warm` or `warm_then_scratch`."""
+    selected: int
+    """1 for the case whose model went on, else 0."""
+    vetoed: int
+    """1 where a check of severity `error` calls the model wrong: it wins only where `model.veto` is off."""
+
+
+FRAME_COLUMNS = column_names(FrameRow)
+CASE_COLUMNS = column_names(CaseRow)
 
 
 def frame_rows(record: RunRecord) -> list[Row]:

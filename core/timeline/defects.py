@@ -16,9 +16,10 @@ from core.mapping.scene import Scene
 from core.mapping.surface_rules import Observation
 from core.outputs import evidence_name
 from core.roi import Crop
-from core.timeline.events import EventRow, leading_label
+from core.timeline.events import leading_label
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.merging import merge_alike
+from core.timeline.rows import EventRow
 from core.timeline.seen import views_of_place, visits
 from core.timeline.visibility import Sighting
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,36 +12,12 @@ from numpy.typing import NDArray
 
 from core.mapping.rows import DetectionRow
 from core.timeline.clusters import Cluster
+from core.timeline.rows import EventRow
 
 if TYPE_CHECKING:  # it loads the ray caster, which whoever writes tables does not need
     from core.timeline.visibility import Sighting
 
 F64 = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class EventRow:
-    """One row of ``mapping/timeline.csv``; the fields are its columns, in order."""
-
-    event_id: int
-    defect_id: int
-    label: str
-    start_s: float
-    end_s: float
-    n_detections: int
-    n_frames: int
-    x: float
-    y: float
-    z: float
-    radius: float
-    confidence: float | None
-
-    def to_dict(self) -> dict[str, Any]:
-        """Flat JSON form, keys in the order of the columns."""
-        return asdict(self)
-
-
-TIMELINE_COLUMNS: tuple[str, ...] = tuple(EventRow.__dataclass_fields__)
 
 
 def leading_label(rows: Sequence[DetectionRow]) -> str:

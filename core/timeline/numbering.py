@@ -13,7 +13,7 @@ from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
 from core.stage import Facts
 from core.task_key import piece_of, stage_of
-from core.timeline.events import EventRow
+from core.timeline.rows import EventRow
 
 I32 = NDArray[np.int32]
 

@@ -21,11 +21,11 @@ from api.app import create_app
 from api.services import Services, make_services
 from core.settings import make_settings
 from store.db import Database
+from store.factory import open_artifacts, open_database
 from store.models import Artifact, Inspection
-from store.opening import open_artifacts, open_database
 from store.records import InputFiles
-from store.rows import replace_rows
 from store.settings import DeploymentSettings
+from store.tables import replace_rows
 from tests.store.small_plan import GRAPH, result_for
 
 ROOT = Path(__file__).parents[2]

@@ -14,7 +14,7 @@ from api.app import create_app
 from api.problems import MEDIA_TYPE, status_of
 from core.errors import BadInput, BladeAtlasError, DiskFull, NoReconstruction, ResourceError
 from core.settings import PRESET_NAMES, make_settings, option_names
-from store.upload_file import UploadLocked
+from store.uploads import UploadLocked
 from tests.api.conftest import Backend, client_of
 
 

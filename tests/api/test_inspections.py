@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from core.errors import NoReconstruction, ResourceError
-from store.artifacts import ArtifactStore
+from store.files import ArtifactStore
 from store.keys import Keys
 from store.models import Inspection
 from store.status import Statuses

@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from api.app import create_app
 from api.problems import MEDIA_TYPE
 from store import tables
-from store.rows import replace_rows
+from store.tables import replace_rows
 from tests.api.conftest import Backend
 from tests.api.test_results import ROWS, case, detection
 

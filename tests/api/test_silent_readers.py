@@ -17,7 +17,7 @@ from sqlalchemy import text
 
 from api.app import create_app
 from api.services import make_services
-from store.opening import open_artifacts, open_database
+from store.factory import open_artifacts, open_database
 from store.settings import DeploymentSettings
 from tests.api.conftest import Backend
 from tests.databases import BOTH, database_url

@@ -8,7 +8,7 @@ import json
 from rich.console import Console
 
 from cli.progress import PLAIN_INTERVAL_S, JsonDisplay, LiveDisplay, PlainDisplay, duration
-from worker.outcome import Event
+from worker.events import Event
 
 EVENTS = [
     Event("opened", 0.0, total=4),

@@ -214,7 +214,7 @@ def test_the_typed_client_covers_the_life_of_an_inspection(backend: Backend, add
 
 
 def test_a_server_that_stays_away_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cli.client.client._PAUSE_S", 0.001)
+    monkeypatch.setattr("cli.client.retry._PAUSE_S", 0.001)
     with Client("http://127.0.0.1:1") as client, pytest.raises(ResourceError) as caught:
         client.get("x")
     assert caught.value.code == "unreachable"
@@ -223,7 +223,7 @@ def test_a_server_that_stays_away_is_said(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_server_that_restarts_is_waited_for(
     backend: Backend, serve: Callable[[FastAPI], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cli.client.client._PAUSE_S", 0.001)
+    monkeypatch.setattr("cli.client.retry._PAUSE_S", 0.001)
     one, answers = backend.create("one"), iter([503, 503])
     app = create_app(backend.services)
 

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from cli import report
-from worker.outcome import Outcome
+from worker.events import Outcome
 
 
 def test_report_says_what_was_made(tmp_path: Path) -> None:

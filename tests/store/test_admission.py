@@ -20,10 +20,10 @@ from core.errors import BladeAtlasError, DiskFull
 from core.settings import make_settings
 from store.admission import Admission, LimitReached
 from store.db import Database
+from store.housekeeping import Retention
 from store.inspections import Inspections
 from store.models import Inspection, Reservation, Upload
 from store.records import InputFiles
-from store.retention import Retention
 from store.settings import DeploymentSettings
 from store.uploads import Uploads
 from tests.store.small_plan import GRAPH

@@ -7,8 +7,8 @@ from sqlalchemy import select
 from sqlalchemy.exc import IntegrityError
 
 from core.errors import BadInput
+from store.admission import IdempotencyKeys, OtherBody
 from store.db import Database
-from store.idempotency import IdempotencyKeys, OtherBody
 from store.keys import KeyRing, Keys
 from store.models import ApiKey
 

@@ -8,8 +8,8 @@ import pytest
 from sqlalchemy import select, update
 
 from core.settings import make_settings
-from store.artifacts import Stored
 from store.db import Database
+from store.files import Stored
 from store.inspections import Inspections
 from store.models import Artifact, CaseRow, Inspection
 from store.plan import Plan

@@ -9,16 +9,13 @@ from sqlalchemy import update
 
 from core.errors import BadInput
 from core.settings import make_settings
-from store.counts import count_all
 from store.db import Database
-from store.deletion import mark_deleted
-from store.forgetting import forget_from
-from store.inspections import Inspections
+from store.inspections import Inspections, forget_from, mark_deleted
 from store.listing import Filter, count_active, list_inspections
 from store.models import Inspection
+from store.monitoring import count_all
 from store.plan import Plan
-from store.progress import StageCount, plan_share
-from store.status import InspectionStatus, Statuses
+from store.status import InspectionStatus, StageCount, Statuses, plan_share
 from store.timings import learn_timings, plan_eta
 from tests.store.small_plan import FILES, GRAPH, result_for
 

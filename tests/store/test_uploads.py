@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from store.db import Database
-from store.upload_file import Digests, UploadFile, UploadLocked
-from store.uploads import Uploads
+from store.uploads import Digests, UploadFile, UploadLocked, Uploads
 
 
 @pytest.fixture

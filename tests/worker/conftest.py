@@ -11,9 +11,9 @@ import pytest
 
 from core.settings import make_settings
 from tests.worker.fake_stages import GRAPH, SMALL, journal
-from worker.outcome import Event, Outcome
+from worker.events import Event, Outcome
+from worker.local_run import run_inspection
 from worker.results import ResultFolders
-from worker.run import run_inspection
 
 
 @dataclass

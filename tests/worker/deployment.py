@@ -17,9 +17,8 @@ from typing import Any
 from sqlalchemy import select
 
 from core.settings import make_settings
-from store.artifacts import ArtifactStore
 from store.db import Database
-from store.inputs import input_key
+from store.files import ArtifactStore, input_key
 from store.inspections import Inspections
 from store.models import Artifact, Attempt, Inspection
 from store.records import InputFiles

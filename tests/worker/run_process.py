@@ -7,7 +7,7 @@ from pathlib import Path
 
 from core.settings import make_settings
 from tests.worker.fake_stages import GRAPH, SMALL
-from worker.run import run_inspection
+from worker.local_run import run_inspection
 
 
 def main(video: str, out: str, workers: str = "2") -> int:

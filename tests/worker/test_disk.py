@@ -13,7 +13,7 @@ from core.settings import make_settings
 from tests.worker.conftest import Workplace
 from tests.worker.disks import fill, mounted
 from tests.worker.fake_stages import GRAPH
-from worker.run import run_inspection
+from worker.local_run import run_inspection
 
 
 @pytest.fixture

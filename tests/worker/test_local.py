@@ -21,8 +21,8 @@ from store.records import InputFiles, Lease
 from tests.databases import BOTH, database
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, SMALL
-from worker.local import LocalRunners
 from worker.logs import TaskLogs
+from worker.loop import LocalRunners
 from worker.results import ResultFolders
 from worker.runner import TaskRunner
 

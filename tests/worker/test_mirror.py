@@ -8,8 +8,7 @@ import pytest
 
 from core.errors import ResourceError
 from core.fingerprint import digest_of
-from store.artifacts import ArtifactStore
-from store.inputs import LocalInputs, input_key
+from store.files import ArtifactStore, LocalInputs, input_key
 from store.records import InputFiles
 from tests.store.object_store import new_bucket, options
 from worker.mirror import MirroredResults

@@ -18,8 +18,7 @@ from store.inspections import Inspections
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow
 from tests.core.making_record import failed_record, full_record
 from tests.store.small_plan import FILES, GRAPH
-from worker.publish import report_rows
-from worker.publish_folder import publish
+from worker.publish import publish, report_rows
 
 FILES_OF = {
     "confirm": ["model/cameras.bin"],

@@ -6,6 +6,7 @@ import base64
 import hashlib
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,16 +17,11 @@ from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
 from core.timeline.clusters import cluster_detections
 from core.timeline.events import event_rows, with_defect_ids
+from tests.core.gallery.hostile import NASTY, hostile_page
 from tests.core.making_rows import mapped, unplaced
 
-NASTY = [
-    "<script>alert(1)</script>",
-    '"><img src=x onerror=alert(1)>',
-    "' onmouseover='alert(1)",
-    "</style></script><svg/onload=alert(1)>",
-    "javascript:alert(1)//&quot;",
-    "läbel ☃ \u202e",
-]
+FORMER = Path(__file__).parents[2] / "data" / "gallery" / "hostile.html"
+"""The page as version 0.1.0 wrote it, by hand, from the same rows."""
 
 
 class Reader(HTMLParser):
@@ -35,12 +31,19 @@ class Reader(HTMLParser):
         super().__init__()
         self.elements: list[tuple[str, dict[str, str | None]]] = []
         self.text = ""
+        self.pieces: list[object] = []
+        """Everything in its order: elements, their ends, and texts without the space around them."""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.elements.append((tag, dict(attrs)))
+        self.pieces.append(self.elements[-1])
+
+    def handle_endtag(self, tag: str) -> None:
+        self.pieces.append(tag)
 
     def handle_data(self, data: str) -> None:
         self.text += data
+        self.pieces += [text] if (text := " ".join(data.split())) else []
 
     def of(self, tag: str) -> list[dict[str, str | None]]:
         return [attributes for name, attributes in self.elements if name == tag]
@@ -134,3 +137,11 @@ def test_an_inspection_without_detections_has_a_page() -> None:
     html = gallery_page([], 0, [], [], {})
     assert "No defect was placed on the surface." in html
     assert "no detection inside the video" in html
+
+
+def test_the_page_says_what_it_said_when_it_was_written_by_hand() -> None:
+    former, now = Reader(), Reader()
+    former.feed(FORMER.read_text(encoding="utf-8"))
+    now.feed(hostile_page())
+    assert len(former.pieces) > 300
+    assert now.pieces == former.pieces

@@ -14,8 +14,8 @@ from core.report.models import join_detections, join_lists
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
-from core.timeline.events import EventRow
 from core.timeline.numbering import Start
+from core.timeline.rows import EventRow
 from tests.core.making_record import full_record
 from tests.core.making_rows import mapped, unplaced
 

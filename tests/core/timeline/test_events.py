@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from core.timeline.clusters import cluster_detections
-from core.timeline.events import TIMELINE_COLUMNS, defect_records, event_rows, extent_of, leading_label, with_defect_ids
+from core.timeline.events import defect_records, event_rows, extent_of, leading_label, with_defect_ids
+from core.timeline.rows import TIMELINE_COLUMNS
 from core.timeline.visibility import Sighting
 from tests.core.making_rows import mapped, unplaced
 

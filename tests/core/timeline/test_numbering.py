@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.timeline.events import EventRow
 from core.timeline.numbering import Start
+from core.timeline.rows import EventRow
 from tests.core.making_rows import mapped, unplaced
 
 FACTS = {

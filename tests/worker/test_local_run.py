@@ -1,0 +1,281 @@
+"""A run with fake stages: what is computed, what is reused, what is refused, how it ends."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from core.errors import BadInput
+from core.settings import make_settings
+from tests.worker.conftest import Workplace
+from tests.worker.fake_stages import GRAPH
+from worker.local_run import Names, run_inspection
+
+ALL = ["join", "last", "part/000", "part/001", "split"]
+
+
+def test_a_run_computes_everything_once_and_the_next_nothing(place: Workplace) -> None:
+    outcome = place.run()
+    assert (outcome.state, outcome.computed, outcome.reused, outcome.error) == ("succeeded", 5, 0, None)
+    assert place.started() == ALL
+    again = place.run()
+    assert (again.state, again.computed, again.reused) == ("succeeded", 0, 5)
+    assert place.started() == []
+    assert place.temporary() == []
+
+
+def test_progress_never_falls_and_ends_at_one(place: Workplace) -> None:
+    place.control(all={"sleep_s": 0.3})
+    place.run()
+    fractions = [event.fraction for event in place.events]
+    assert fractions == sorted(fractions)
+    assert (fractions[0], fractions[-1]) == (0.0, 1.0)
+    kinds = [event.kind for event in place.events]
+    assert kinds[0] == "opened"
+    assert kinds[-2:] == ["published", "finished"]
+    assert "progress" in kinds
+    ended = [event for event in place.events if event.kind == "ended"]
+    assert sorted(event.key for event in ended) == ALL
+    assert [(e.done, e.total) for e in ended if e.stage == "part"][-1] == (2, 2)
+    left = [event.eta_s for event in place.events if event.eta_s is not None]
+    assert left[-1] == 0.0
+
+
+def test_stage_outcomes_sum_up_their_tasks(place: Workplace) -> None:
+    outcome = place.run()
+    part = next(stage for stage in outcome.stages if stage.name == "part")
+    assert (part.state, part.done, part.total, part.reused) == ("succeeded", 2, 2, 0)
+    assert part.peak_rss_bytes > 1 << 20
+    assert part.seconds > 0
+
+
+def test_fanned_out_stages_get_one_thread_and_others_what_is_set(place: Workplace) -> None:
+    place.run({"compute.threads": 3})
+    lines = [line.split() for line in (place.video.parent / "journal.txt").read_text().splitlines()]
+    threads = {line[1]: line[3] for line in lines if line[0] == "start"}
+    assert (threads["split"], threads["part/000"]) == ("3", "1")
+
+
+@pytest.mark.parametrize(
+    ("options", "again"),
+    [
+        ({"timeline.radius_fraction": 0.05}, ["last"]),
+        ({"mesh.poisson_trim": 5.0}, ["join", "last"]),
+        # A split with another count has another digest, so every part is made anew from it.
+        ({"matching.window": 1}, [key for key in ALL if key != "part/001"]),
+    ],
+)
+def test_changed_parameters_recompute_only_what_they_touch(
+    place: Workplace, options: dict[str, float], again: list[str]
+) -> None:
+    place.run()
+    place.started()
+    place.run(options)
+    assert place.started() == sorted(again)
+    place.run()
+    assert place.started() == []
+
+
+def test_the_callers_names_stand_beside_the_result_and_cost_no_work(place: Workplace) -> None:
+    place.run(names=Names("stage 2", "WO-1187"))
+    place.started()
+    for label in ("stage 2", "stage 3"):
+        place.run(names=Names(label, "WO-1187"))
+        summary = json.loads((place.out / "summary.json").read_text())
+        assert (summary["label"], summary["external_id"]) == (label, "WO-1187")
+    assert place.started() == []
+
+
+def test_from_stage_forgets_that_stage_and_all_that_follow(place: Workplace) -> None:
+    place.run()
+    place.started()
+    outcome = place.run(from_stage="join")
+    assert place.started() == ["join", "last"]
+    assert (outcome.computed, outcome.reused) == (2, 3)
+    with pytest.raises(BadInput, match="unknown stage 'mesh'"):
+        place.run(from_stage="mesh")
+
+
+def test_another_input_is_refused_and_forced(place: Workplace) -> None:
+    place.run()
+    place.started()
+    place.video.write_bytes(b"another video")
+    with pytest.raises(BadInput) as caught:
+        place.run()
+    assert caught.value.code == "another_input"
+    assert place.started() == []
+    assert place.run(force=True).state == "succeeded"
+    assert place.started() == ALL
+
+
+def test_other_annotations_are_another_input_but_share_results(place: Workplace, tmp_path: Path) -> None:
+    place.run()
+    place.started()
+    notes = tmp_path / "notes.json"
+    notes.write_text("{}")
+    with pytest.raises(BadInput):
+        place.run(annotations=notes)
+    place.run(annotations=notes, force=True)
+    assert place.started() == ["last"]
+
+
+def test_a_folder_may_have_any_name(place: Workplace, tmp_path: Path) -> None:
+    strange = Workplace(tmp_path / "a::b ?#%20~ü")
+    strange.video.parent.mkdir(parents=True)
+    strange.video.write_bytes(place.video.read_bytes())
+    assert strange.run().state == "succeeded"
+    assert (strange.out / "summary.json").is_file()
+    assert strange.run().computed == 0
+
+
+def test_a_folder_with_files_of_somebody_else_is_refused(place: Workplace) -> None:
+    place.out.mkdir()
+    (place.out / "summary.json").write_text("mine")
+    with pytest.raises(BadInput) as caught:
+        place.run()
+    assert caught.value.code == "foreign_files"
+    assert (place.out / "summary.json").read_text() == "mine"
+    assert place.run(force=True).state == "succeeded"
+
+
+def test_a_missing_video_is_bad_input(place: Workplace) -> None:
+    place.video.unlink()
+    with pytest.raises(BadInput):
+        place.run()
+    assert not place.out.exists()
+
+
+def test_two_runs_in_one_folder_exclude_each_other(place: Workplace) -> None:
+    place.control(split={"sleep_s": 2.0})
+    first = threading.Thread(target=place.run)
+    first.start()
+    while not any(event.kind == "started" for event in place.events):
+        time.sleep(0.02)
+    with pytest.raises(BadInput) as caught:
+        run_inspection(place.video, None, place.out, make_settings(), graph=GRAPH)
+    assert caught.value.code == "folder_in_use"
+    first.join()
+    assert place.events[-1].state == "succeeded"
+
+
+def test_a_failed_part_is_tolerated_and_tried_again_next_time(place: Workplace) -> None:
+    place.control(part__001={"raise": "stage"})
+    outcome = place.run()
+    assert outcome.state == "succeeded"
+    assert facts(place, "join")["parts"] == 1
+    place.started()
+    place.control()
+    place.run()
+    assert place.started() == ["join", "last", "part/001"]
+    assert facts(place, "join")["parts"] == 2
+
+
+def facts(place: Workplace, stage: str) -> dict[str, float]:
+    newest = max((place.out / ".bladeatlas/results" / stage).glob("*/result.json"), key=lambda p: p.stat().st_mtime_ns)
+    found: dict[str, float] = json.loads(newest.read_text())["facts"]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "attempts"),
+    [
+        ("no_reconstruction", "no_reconstruction", 1),
+        ("bug", "internal", 1),
+        ("memory", "oom", 1),
+    ],
+)
+def test_errors_end_a_run_with_their_code_after_their_attempts(
+    place: Workplace, error: str, code: str, attempts: int
+) -> None:
+    place.control(split={"raise": error})
+    outcome = place.run()
+    assert (outcome.state, outcome.failed_stage) == ("failed", "split")
+    assert outcome.error is not None
+    assert outcome.error.code == code
+    assert place.started() == ["split"] * attempts
+    summary = json.loads((place.out / "summary.json").read_text())
+    assert (summary["state"], summary["failed_stage"], summary["reason"]) == ("failed", "split", code)
+    log = (place.out / ".bladeatlas/logs/split.log").read_text()
+    assert "Traceback" in log
+
+
+def test_a_task_that_dies_twice_works_the_third_time(place: Workplace) -> None:
+    place.control(split={"die": 11, "times": 2})
+    assert place.run().state == "succeeded"
+    assert place.started().count("split") == 3
+    retries = [event for event in place.events if event.kind == "retry"]
+    assert len(retries) == 2
+    assert "SIGSEGV" in retries[0].message
+
+
+def test_a_part_that_always_kills_its_process_is_done_without(place: Workplace) -> None:
+    place.control(part__001={"die": 9})
+    outcome = place.run()
+    assert outcome.state == "succeeded"
+    assert place.started().count("part/001") == 3
+    assert facts(place, "join")["parts"] == 1
+
+
+def test_a_full_disk_in_an_optional_part_stops_the_run(place: Workplace) -> None:
+    place.control(part__001={"raise": "disk"})
+    outcome = place.run()
+    assert outcome.state == "failed"
+    assert outcome.error is not None
+    assert outcome.error.code == "disk_full"
+    assert "join" not in place.started()
+
+
+def test_a_failure_with_something_to_serve_is_partial(place: Workplace) -> None:
+    place.control(last={"raise": "stage"})
+    outcome = place.run()
+    assert (outcome.state, outcome.failed_stage) == ("partial", "last")
+
+
+def test_a_task_above_its_memory_limit_is_ended_as_oom(place: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BLADEATLAS_TASK_MEMORY_BYTES", str(300 << 20))
+    place.control(part__001={"megabytes": 500})
+    outcome = place.run()
+    assert outcome.state == "succeeded"
+    assert place.started().count("part/001") == 1
+    failed = [event for event in place.events if event.kind == "ended" and event.state == "failed"]
+    assert [(event.key, "300 MiB" in event.message) for event in failed] == [("part/001", True)]
+
+
+def test_a_task_above_its_time_limit_is_ended_as_timeout(place: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BLADEATLAS_TASK_SECONDS", "2.5")
+    place.control(last={"sleep_s": 30, "deaf": True})
+    outcome = place.run()
+    assert (outcome.state, outcome.failed_stage) == ("partial", "last")
+    assert outcome.error is not None
+    assert (outcome.error.code, outcome.error.message) == ("timeout", "the task ran longer than its limit of 2.5 s")
+    assert place.started().count("last") == 1
+
+
+def test_results_whose_files_vanished_are_made_again(place: Workplace) -> None:
+    place.run()
+    place.started()
+    victim = next((place.out / ".bladeatlas/results/part").glob("*/model/points.bin"))
+    victim.write_bytes(victim.read_bytes()[:-1])
+    place.run()
+    assert len(place.started()) == 1
+
+
+def test_a_lost_plan_is_rebuilt_from_the_results_on_disk(place: Workplace) -> None:
+    place.run()
+    place.started()
+    for path in (place.out / ".bladeatlas").glob("plan.db*"):
+        path.unlink()
+    assert place.run(force=True).reused == 5
+    assert place.started() == []
+
+
+def test_old_results_are_cleaned_up_but_for_the_previous_parameters(place: Workplace) -> None:
+    for radius in (0.02, 0.03, 0.04, 0.05):
+        place.run({"timeline.radius_fraction": radius})
+    results = place.out / ".bladeatlas" / "results"
+    assert len(list(results.glob("last/*"))) == 2
+    assert len(list(results.glob("part/*"))) == 2

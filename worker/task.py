@@ -1,0 +1,326 @@
+"""A task's process tree: the runner's view of it, and the guard and the stage that it consists of.
+
+`python -m worker.task PARENT_PID` runs one stage in a process group that dies with its parent. Two processes: a small
+guard, and the stage forked from it. The kernel tells the guard when the runner dies (PR_SET_PDEATHSIG), and the guard
+then kills the whole group, so that helpers of the stage go too; the stage itself is killed by the kernel when the
+guard dies. The description of the task comes as JSON on stdin, progress and the outcome leave as JSON lines on a pipe.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import json
+import math
+import os
+import resource
+import select
+import signal
+import subprocess
+import sys
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, NoReturn
+
+import psutil
+
+from core.child_environment import child_environment
+from core.errors import BladeAtlasError, DiskFull, ResourceError, error_from_dict
+from core.settings import Settings, only_declared
+from core.stage import StageResult, StageTask
+from store.disk import NO_SPACE, disk_is_full
+from worker.results import seal
+
+_POLL_S = 0.2
+_GRACE_S = 2.0
+"""Between the request to stop and the kill: nothing of an unfinished task is worth waiting longer for."""
+
+StopReason = Literal["", "interrupted", "cancelled", "lost"]
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a task's process ended."""
+
+    error: BladeAtlasError | None
+    """None when the stage finished and its folder is sealed."""
+    stopped: StopReason
+    """Why it was stopped, when it was."""
+    seconds: float
+    peak_rss_bytes: int
+
+
+class TaskProcess:
+    """One run of `worker.task`."""
+
+    def __init__(
+        self, spec: Mapping[str, Any], log: Path, memory_limit_bytes: int = 0, limit_s: float = math.inf
+    ) -> None:
+        self._key = str(spec["key"])
+        self._limit = memory_limit_bytes
+        self._limit_s = limit_s
+        self._oom_kills = _kernel_oom_kills()
+        self._last: dict[str, Any] = {}
+        self._buffer = b""
+        self._peak = 0
+        self._started = time.monotonic()
+        self._read, write = os.pipe()
+        try:
+            with log.open("ab") as log_stream:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-m", "worker.task", str(os.getpid())],
+                    stdin=subprocess.PIPE,
+                    stdout=log_stream,
+                    stderr=subprocess.STDOUT,
+                    pass_fds=(write,),
+                    start_new_session=True,
+                    env=child_environment(int(spec["threads"])),
+                )
+        except BaseException:
+            os.close(self._read)
+            raise
+        finally:
+            os.close(write)
+        self._hand_over({**spec, "channel": write})
+
+    def _hand_over(self, spec: Mapping[str, Any]) -> None:
+        assert self._process.stdin is not None
+        with suppress(BrokenPipeError), self._process.stdin as stream:
+            stream.write(json.dumps(spec, allow_nan=False).encode())
+
+    def wait(self, on_progress: Callable[[float, str], None], stop: Callable[[], StopReason]) -> Ended:
+        """Listen until the tree has ended; asks `stop` a few times a second whether to end it early."""
+        reason: StopReason = ""
+        beyond: ResourceError | None = None
+        try:
+            while not self._over():
+                self._listen(on_progress)
+                reason = stop()
+                beyond = self._beyond_limits()
+                if reason or beyond:
+                    self._terminate()
+                    break
+        finally:
+            seconds, rusage_peak = time.monotonic() - self._started, self._reap()
+        self._drain(on_progress)
+        os.close(self._read)
+        error = None if reason else beyond or self._error()
+        return Ended(error, reason, round(seconds, 3), max(self._peak, rusage_peak))
+
+    def _over(self) -> bool:
+        """True once the guard has ended; it stays unreaped, so its process group cannot be given to others."""
+        options = os.WEXITED | os.WNOHANG | os.WNOWAIT
+        return os.waitid(os.P_PID, self._process.pid, options) is not None
+
+    def _listen(self, on_progress: Callable[[float, str], None], wait_s: float = _POLL_S) -> bool:
+        """Take in what was written; False at the end of the stream."""
+        if not select.select([self._read], [], [], wait_s)[0]:
+            return True
+        data = os.read(self._read, 1 << 16)
+        *lines, self._buffer = (self._buffer + data).split(b"\n")
+        for line in lines:
+            message = json.loads(line)
+            if "progress" in message:
+                on_progress(float(message["progress"]), str(message["message"]))
+            else:
+                self._last.update(message)
+        if not data:
+            time.sleep(0.01)  # the stream is over, the guard is about to be
+        return bool(data)
+
+    def _drain(self, on_progress: Callable[[float, str], None]) -> None:
+        while select.select([self._read], [], [], 0)[0] and self._listen(on_progress, 0):
+            pass
+
+    def _terminate(self) -> None:
+        self._signal(signal.SIGTERM)
+        deadline = time.monotonic() + _GRACE_S
+        while not self._over() and time.monotonic() < deadline:
+            time.sleep(0.02)
+
+    def _signal(self, number: signal.Signals) -> None:
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, number)
+
+    def _reap(self) -> int:
+        """Kill whatever is left of the group, collect the guard; its peak memory in bytes, children included."""
+        self._signal(signal.SIGKILL)
+        _, status, usage = os.wait4(self._process.pid, 0)
+        self._process.returncode = os.waitstatus_to_exitcode(status)
+        return usage.ru_maxrss * 1024
+
+    def _resident(self) -> int:
+        """Resident bytes of the whole tree now."""
+        total = 0
+        with suppress(psutil.Error):
+            guard = psutil.Process(self._process.pid)
+            for process in (guard, *guard.children(recursive=True)):
+                with suppress(psutil.Error):
+                    total += process.memory_info().rss
+        self._peak = max(self._peak, total)
+        return total
+
+    def _beyond_limits(self) -> ResourceError | None:
+        if time.monotonic() - self._started > self._limit_s:
+            message = f"the task ran longer than its limit of {self._limit_s:g} s"
+            return ResourceError(message, code="timeout", where=self._key)
+        if self._limit > 0 and self._resident() > self._limit:
+            limit = f"{self._limit / 2**20:.0f} MiB"
+            return ResourceError(f"the task used more memory than its limit of {limit}", code="oom", where=self._key)
+        return None
+
+    def _error(self) -> BladeAtlasError | None:
+        if "error" in self._last:
+            return error_from_dict(self._last["error"])
+        if "done" in self._last:
+            return None
+        number = int(self._last.get("signal", -min(0, self._process.returncode)))
+        if number == signal.SIGKILL and _kernel_oom_kills() > self._oom_kills:
+            return ResourceError("the system killed the task for lack of memory", code="oom", where=self._key)
+        how = signal.Signals(number).name if number else f"exit code {self._process.returncode}"
+        return ResourceError(f"the task's process died ({how})", code="worker_lost", where=self._key)
+
+
+def _kernel_oom_kills() -> int:
+    """How often the kernel killed something for lack of memory since it started; 0 where it does not say."""
+    with suppress(OSError):
+        for line in Path("/proc/vmstat").read_text(encoding="ascii").splitlines():
+            if line.startswith("oom_kill "):
+                return int(line.split()[1])
+    return 0
+
+
+_PR_SET_PDEATHSIG = 1
+_PROGRESS_EVERY_S = 0.5
+
+
+def die_with(parent: int, with_signal: signal.Signals) -> None:
+    """Ask the kernel for `with_signal` when the parent dies; leave at once if it is dead already."""
+    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, int(with_signal), 0, 0, 0)
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+class Channel:
+    """JSON lines to the runner."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+        self._sent_at = 0.0
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Write one line; a runner that is gone is not this process's problem, it will be killed."""
+        data = memoryview((json.dumps(message, allow_nan=False) + "\n").encode())
+        with suppress(BrokenPipeError):
+            while data:
+                data = data[os.write(self._descriptor, data) :]
+
+    def progress(self, fraction: float, message: str) -> None:
+        """Report progress, but not more often than anyone can look."""
+        now = time.monotonic()
+        if now - self._sent_at >= _PROGRESS_EVERY_S:
+            self._sent_at = now
+            self.send({"progress": min(1.0, max(0.0, fraction)), "message": message})
+
+
+def main() -> NoReturn:
+    """Guard one stage."""
+    runner = int(sys.argv[1])
+    watched = {signal.SIGTERM, signal.SIGCHLD}
+    # Blocked before the kernel is asked: the notice of the runner's death must wait, not kill the guard alone.
+    signal.pthread_sigmask(signal.SIG_BLOCK, watched)
+    die_with(runner, signal.SIGTERM)
+    spec = json.load(sys.stdin)
+    channel = Channel(int(spec["channel"]))
+    guard = os.getpid()
+    stage = os.fork()
+    if stage == 0:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, watched)
+        _stage_process(spec, channel, guard)
+    while True:
+        arrived = signal.sigwait(watched)
+        if arrived == signal.SIGTERM and os.getppid() != runner:
+            os.killpg(0, signal.SIGKILL)
+        ended, status = os.waitpid(stage, os.WNOHANG)
+        if ended:
+            if os.WIFSIGNALED(status):
+                channel.send({"signal": os.WTERMSIG(status)})
+            os._exit(os.waitstatus_to_exitcode(status) & 0xFF)
+
+
+def _stage_process(spec: dict[str, Any], channel: Channel, guard: int) -> NoReturn:
+    """The forked process that becomes the stage."""
+    stopped: list[int] = []
+    signal.signal(signal.SIGTERM, lambda number, _frame: stopped.append(number))
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    die_with(guard, signal.SIGKILL)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    code = 0
+    try:
+        channel.send({"done": _run(spec, channel, lambda: bool(stopped))})
+    except BaseException as error:  # noqa: BLE001 - this is the border of the process: everything becomes a message
+        code = 1
+        traceback.print_exc()
+        channel.send({"error": describe(error, str(spec["key"]), Path(spec["out"]))})
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # No interpreter shutdown: destructors of native libraries may hang or crash after the work is safe.
+    os._exit(code)
+
+
+def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) -> dict[str, Any]:
+    started = time.monotonic()
+    module, _, function = str(spec["entry"]).partition(":")
+    run: Callable[[StageTask], StageResult] = getattr(importlib.import_module(module), function)
+    out = Path(spec["out"])
+    task = StageTask(
+        key=spec["key"],
+        args=spec["args"],
+        settings=only_declared(Settings.model_validate(spec["settings"]), spec["declared"]),
+        inputs={key: Path(path) for key, path in spec["inputs"].items()},
+        facts=spec["facts"],
+        video=Path(spec["video"]),
+        annotations=Path(spec["annotations"]) if spec["annotations"] else None,
+        out=out,
+        threads=spec["threads"],
+        max_frame_pixels=spec["max_frame_pixels"],
+        progress=channel.progress,
+        cancelled=cancelled,
+    )
+    facts = json.loads(json.dumps(run(task).facts, allow_nan=False))
+    manifest = seal(
+        out,
+        fingerprint=spec["fingerprint"],
+        key=task.key,
+        version=spec["version"],
+        facts=facts,
+        seconds=round(time.monotonic() - started, 3),
+        rss=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+    )
+    return {"digest": manifest.digest}
+
+
+def describe(error: BaseException, key: str, out: Path) -> dict[str, Any]:
+    """An error as JSON: expected ones as they are, the others by what they mean for the runner."""
+    if out.is_dir() and disk_is_full(out):
+        return DiskFull("no space left on the disk of the output folder", where=key).to_dict()
+    if isinstance(error, BladeAtlasError):
+        return error.to_dict()
+    if isinstance(error, MemoryError):
+        return ResourceError("not enough memory for this task", code="oom", where=key).to_dict()
+    cause: BaseException | None = error
+    while cause is not None:
+        if isinstance(cause, OSError) and cause.errno in NO_SPACE:
+            reason = os.strerror(cause.errno or 0).lower()
+            return DiskFull(f"the output folder cannot be written: {reason}", where=key).to_dict()
+        cause = cause.__cause__ or cause.__context__
+    name = type(error).__name__
+    return BladeAtlasError(f"{name}: {error}".strip()[:2000], where=key).to_dict()
+
+
+if __name__ == "__main__":
+    main()

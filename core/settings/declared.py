@@ -46,13 +46,13 @@ def _is_declared(option: str, names: tuple[str, ...]) -> bool:
     return option in names or option.partition(".")[0] in names
 
 
-def _with_only(group: G, options: Iterable[str]) -> G:
+def _with_only(group: Group, options: Iterable[str]) -> Group:
     return _made_of(type(group), {name: getattr(group, name) for name in options})
 
 
 def _made_of(kind: type[G], values: Mapping[str, Any]) -> G:
     """A group that lacks what is not in `values`; values are valid already, so nothing is checked again."""
-    made = kind.model_construct(**values)
+    made: G = kind.model_construct(**values)
     for name in [name for name in made.__dict__ if name not in values]:
         del made.__dict__[name]
     return made

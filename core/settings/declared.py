@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 from core.settings.base import Group
 from core.settings.presets import Settings
-
-G = TypeVar("G", bound=Group)
 
 
 def only_declared(settings: Settings, names: Iterable[str]) -> Settings:
@@ -32,7 +30,9 @@ def only_declared(settings: Settings, names: Iterable[str]) -> Settings:
     if "overrides" in whole:
         # Those of other stages must not touch this one.
         found["overrides"] = tuple(name for name in settings.overrides if _is_declared(name, chosen))
-    return _made_of(Settings, found)
+    made = _made_of(Settings, found)
+    assert isinstance(made, Settings)
+    return made
 
 
 def declared_values(settings: Settings, names: Iterable[str]) -> dict[str, Any]:
@@ -50,9 +50,9 @@ def _with_only(group: Group, options: Iterable[str]) -> Group:
     return _made_of(type(group), {name: getattr(group, name) for name in options})
 
 
-def _made_of(kind: type[G], values: Mapping[str, Any]) -> G:
+def _made_of(kind: type[Group], values: Mapping[str, Any]) -> Group:
     """A group that lacks what is not in `values`; values are valid already, so nothing is checked again."""
-    made: G = kind.model_construct(**values)
+    made = kind.model_construct(**values)
     for name in [name for name in made.__dict__ if name not in values]:
         del made.__dict__[name]
     return made

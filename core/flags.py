@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
-from typing import Any
+from typing import NotRequired, TypedDict
 
 from core.errors import StageFailed
 
@@ -66,6 +66,16 @@ FLAG_CODES: Mapping[str, str] = {
 """Every code that can appear, with its meaning. A code that is not here cannot be raised."""
 
 
+class FlagFields(TypedDict):
+    """The form of a flag in facts and in `quality.json`."""
+
+    code: str
+    severity: str
+    value: NotRequired[float | None]
+    threshold: NotRequired[float | None]
+    where: NotRequired[str]
+
+
 @dataclass(frozen=True)
 class Flag:
     """One finding of a check.
@@ -89,7 +99,7 @@ class Flag:
         """One clause for people."""
         return FLAG_CODES[self.code]
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, str | float | None]:
         """The form of `quality.json`: code, severity, value, threshold, where; numbers rounded to 6 digits."""
         row = asdict(self)
         for name in ("value", "threshold"):
@@ -98,7 +108,7 @@ class Flag:
         return row
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> Flag:
+    def from_dict(cls, row: FlagFields) -> Flag:
         """Rebuild from `to_dict`; unknown codes and severities raise `StageFailed`."""
         return cls(
             row["code"], _severity(row["severity"]), row.get("value"), row.get("threshold"), row.get("where", "")
@@ -117,6 +127,6 @@ def worst(flags: list[Flag]) -> Severity | None:
     return max((flag.severity for flag in flags), key=SEVERITIES.index, default=None)
 
 
-def error_codes(checks: Iterable[Mapping[str, Any]]) -> str:
+def error_codes(checks: Iterable[Mapping[str, object]]) -> str:
     """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is vetoed."""
     return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == Severity.ERROR}))

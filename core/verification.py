@@ -41,7 +41,7 @@ class TwoViewGeometry:
     """Median angle between the rays of the inliers; 0 when the views did not move apart."""
 
 
-def camera_from_dict(values: Mapping[str, Any]) -> Any:
+def camera_from_dict(values: Mapping[str, Any]) -> pycolmap.Camera:
     """`pycolmap.Camera` number 1 from the content of ``camera.json``.
 
     The focal length is marked as a prior: without it COLMAP 4.2 calls every fisheye pair degenerate.
@@ -56,7 +56,7 @@ def camera_from_dict(values: Mapping[str, Any]) -> Any:
     )
 
 
-def read_camera(path: Path) -> Any:
+def read_camera(path: Path) -> pycolmap.Camera:
     """`camera_from_dict` of a file."""
     return camera_from_dict(json.loads(path.read_text(encoding="utf-8")))
 
@@ -64,7 +64,7 @@ def read_camera(path: Path) -> Any:
 class Verifier:
     """Verifies pairs of frames that share `camera`; the same input gives the same output."""
 
-    def __init__(self, camera: Any, settings: VerificationSettings, seed: int = 0) -> None:
+    def __init__(self, camera: pycolmap.Camera, settings: VerificationSettings, seed: int = 0) -> None:
         """Take the camera as `camera_from_dict` makes it."""
         self._camera = camera
         options = pycolmap.TwoViewGeometryOptions()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from core.checks.parallax import cases_parallax
@@ -33,7 +34,8 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     for task in record.tasks:
         piece = piece_of(task.key)
         for row in [*task.facts.get("flags", ()), *_checks_that_count(record, task)]:
-            flags.append(Flag.from_dict({**row, "where": f"model {piece}, {row['where']}"} if piece else row))
+            flag = Flag.from_dict(row)
+            flags.append(replace(flag, where=f"model {piece}, {flag.where}") if piece else flag)
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
     return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal, get_args
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 
 from core.errors import BadInput
 from core.names import nearest
@@ -42,7 +43,7 @@ class Settings(Group):
     overrides: tuple[str, ...] = option((), "names that the user set, sorted", source="the run")
 
 
-_PRESETS: dict[str, dict[str, Any]] = {
+_PRESETS: dict[str, dict[str, object]] = {
     "default": {},
     "thesis": {
         "frames.clip_start_s": 2.0,
@@ -98,12 +99,12 @@ _PRESETS: dict[str, dict[str, Any]] = {
 }
 
 
-def option_names() -> dict[str, Any]:
-    """Every option that can be set, dotted name -> pydantic FieldInfo, in the order of declaration."""
+def option_names() -> dict[str, FieldInfo]:
+    """Every option that can be set, dotted name -> its declaration, in the order of declaration."""
     return dict(_walk(Settings, ""))
 
 
-def _walk(model: type[Group], prefix: str) -> Iterator[tuple[str, Any]]:
+def _walk(model: type[Group], prefix: str) -> Iterator[tuple[str, FieldInfo]]:
     for name, info in model.model_fields.items():
         if isinstance(info.annotation, type) and issubclass(info.annotation, Group):
             yield from _walk(info.annotation, f"{prefix}{name}.")
@@ -111,14 +112,14 @@ def _walk(model: type[Group], prefix: str) -> Iterator[tuple[str, Any]]:
             yield f"{prefix}{name}", info
 
 
-def preset_values(preset: str) -> dict[str, Any]:
+def preset_values(preset: str) -> dict[str, object]:
     """Dotted overrides that make `preset` from the defaults; `BadInput` for an unknown preset."""
     if preset not in _PRESETS:
         raise BadInput(f"unknown preset '{preset}'; known: {', '.join(PRESET_NAMES)}", where="preset")
     return dict(_PRESETS[preset])
 
 
-def make_settings(preset: str = "default", options: Mapping[str, Any] | None = None) -> Settings:
+def make_settings(preset: str = "default", options: Mapping[str, object] | None = None) -> Settings:
     """Settings of a preset with named overrides, e.g. ``{"matching.window": 8}``.
 
     Values may be JSON values or text as on the command line. Raises `BadInput` that names the unknown

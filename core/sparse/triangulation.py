@@ -26,7 +26,7 @@ MIN_LENGTH = 3
 """Two views cannot contradict each other: COLMAP's `ignore_two_view_tracks`."""
 
 
-def add_track_points(model: Any, tracks: Tracks, frames: Frames) -> int:
+def add_track_points(model: pycolmap.Reconstruction, tracks: Tracks, frames: Frames) -> int:
     """Add the points of `tracks` that the registered images of `model` see well; returns how many.
 
     Args:
@@ -54,7 +54,7 @@ def add_track_points(model: Any, tracks: Tracks, frames: Frames) -> int:
 
 
 def _world_rays(
-    model: Any, ids: list[int], tracks: Tracks, frames: Frames, row: npt.NDArray[np.int64]
+    model: pycolmap.Reconstruction, ids: list[int], tracks: Tracks, frames: Frames, row: npt.NDArray[np.int64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Unit rays (total, 3) in the world of all observations in registered images, and centres (images, 3)."""
     keypoints = dict(zip(frames.indices, frames.keypoints, strict=True))
@@ -69,7 +69,7 @@ def _world_rays(
         if len(mine) == 0:
             continue
         xy = keypoints[image_id - 1][tracks.keypoint[mine]]
-        in_camera = np.asarray(image.camera.cam_ray_from_img(xy))
+        in_camera = np.asarray(model.camera(image.camera_id).cam_ray_from_img(xy))
         rays[mine] = in_camera @ image.cam_from_world().rotation.matrix()
     return rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12), centers
 

@@ -49,7 +49,7 @@ class VideoInfo:
     declared_rate: Fraction | None = None
     """Frames per second as the file's header says, what OpenCV's ``CAP_PROP_FPS`` gives; None when it says nothing."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """The form of `video.json`; rationals as ``num/den``."""
         row = dict(self.__dict__)
         for name in ("average_rate", "time_base"):

@@ -3,6 +3,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.checks.rotations import check_rotations, disagreement, measured_rotations, worst_cut
+from core.viewgraph import PairTable
 
 N = 40
 FRAMES = np.arange(N)
@@ -18,12 +19,18 @@ def graph(rotations, noise_deg=0.3, window=5, config=2, inliers=200):
     pairs = np.array([(i, j) for i in range(N) for j in range(i + 1, min(i + window, N - 1) + 1)], np.int32)
     noise = Rotation.from_rotvec(np.radians(noise_deg) * rng.standard_normal((len(pairs), 3)) / np.sqrt(3))
     relative = Rotation.from_matrix(rotations[pairs[:, 1]] @ np.swapaxes(rotations[pairs[:, 0]], 1, 2)) * noise
-    return {
-        "pairs": pairs,
-        "rotation_xyzw": relative.as_quat(),
-        "config": np.full(len(pairs), config, np.uint8),
-        "offsets": np.arange(len(pairs) + 1) * inliers,
-    }
+    n = len(pairs)
+    return PairTable(
+        pairs=pairs,
+        method=np.zeros(n, np.uint8),
+        n_matches=np.full(n, inliers, np.int32),
+        config=np.full(n, config, np.uint8),
+        offsets=np.arange(n + 1) * inliers,
+        inliers=np.zeros((n * inliers, 2), np.uint32),
+        rotation_xyzw=relative.as_quat(),
+        translation=np.zeros((n, 3)),
+        triangulation_angle_deg=np.zeros(n, np.float32),
+    )
 
 
 def flag_of(model, **kinds):

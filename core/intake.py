@@ -16,7 +16,7 @@ import signal
 import sys
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import NotRequired, TypedDict
 
 from core.annotations.parse import load_annotations
 from core.errors import BadInput, BladeAtlasError
@@ -27,6 +27,18 @@ from core.video.decode import VideoReader
 from core.video.limits import PIXELS_ONLY, VideoLimits
 
 _PR_SET_PDEATHSIG = 1
+
+
+class Question(TypedDict):
+    """What `answer` is asked; paths as text."""
+
+    video: str
+    annotations: NotRequired[str | None]
+    video_stream: NotRequired[int | None]
+    roi: dict[str, float]
+    """Shares of the frame: x0, y0, x1, y1."""
+    limits: NotRequired[dict[str, int]]
+    """Fields of `VideoLimits`."""
 
 
 class VideoSize(TypedDict):
@@ -89,7 +101,7 @@ def check_roi(settings: Settings) -> None:
         )
 
 
-def answer(question: dict[str, Any]) -> dict[str, object]:
+def answer(question: Question) -> dict[str, object]:
     """Check what a question names.
 
     Args:

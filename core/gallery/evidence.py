@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.gallery.defects import Row
 from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
 
@@ -43,7 +43,7 @@ class Evidence:
         return evidence_name(self.defect)
 
 
-def evidence_of(records: Sequence[Mapping[str, Any]], rows: Sequence[DetectionRow]) -> list[Evidence]:
+def evidence_of(records: Sequence[Row], rows: Sequence[DetectionRow]) -> list[Evidence]:
     """Of every defect with a view in which it was detected, in their order."""
     found = []
     for record in records:
@@ -58,7 +58,7 @@ def evidence_of(records: Sequence[Mapping[str, Any]], rows: Sequence[DetectionRo
     return [one for one in found if one.boxes]
 
 
-def _caption(record: Mapping[str, Any]) -> str:
+def _caption(record: Row) -> str:
     seen = record["persistence"]
     confidence = record.get("confidence") or {}
     sure = f", confidence {confidence['value']:.2f}" if confidence else ""

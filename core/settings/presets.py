@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -132,15 +132,13 @@ def make_settings(preset: str = "default", options: Mapping[str, object] | None 
             near = nearest(name, known)
             hint = f"; did you mean '{near}'?" if near else "; `bladeatlas options` lists all"
             raise BadInput(f"unknown option '{name}'{hint}", where=name)
-    tree: dict[str, Any] = {"preset": preset, "overrides": tuple(sorted(chosen))}
+    values: dict[str, object] = {"preset": preset, "overrides": tuple(sorted(chosen))}
+    groups_of_values: dict[str, dict[str, object]] = {}
     for name, value in {**preset_values(preset), **chosen}.items():
-        node = tree
-        *parents, leaf = name.split(".")
-        for parent in parents:
-            node = node.setdefault(parent, {})
-        node[leaf] = value
+        group, _, leaf = name.rpartition(".")
+        (groups_of_values.setdefault(group, {}) if group else values)[leaf] = value
     try:
-        return Settings.model_validate(tree)
+        return Settings.model_validate({**values, **groups_of_values})
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])

@@ -6,7 +6,7 @@ A flag is a small fact. Stages put flags into their facts, the report collects t
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import NotRequired, TypedDict
 
@@ -99,13 +99,15 @@ class Flag:
         """One clause for people."""
         return FLAG_CODES[self.code]
 
-    def to_dict(self) -> dict[str, str | float | None]:
+    def to_dict(self) -> FlagFields:
         """The form of `quality.json`: code, severity, value, threshold, where; numbers rounded to 6 digits."""
-        row = asdict(self)
-        for name in ("value", "threshold"):
-            if row[name] is not None:
-                row[name] = float(f"{row[name]:.6g}")
-        return row
+        return {
+            "code": self.code,
+            "severity": self.severity,
+            "value": _rounded(self.value),
+            "threshold": _rounded(self.threshold),
+            "where": self.where,
+        }
 
     @classmethod
     def from_dict(cls, row: FlagFields) -> Flag:
@@ -113,6 +115,10 @@ class Flag:
         return cls(
             row["code"], _severity(row["severity"]), row.get("value"), row.get("threshold"), row.get("where", "")
         )
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else float(f"{value:.6g}")
 
 
 def _severity(value: str) -> Severity:

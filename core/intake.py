@@ -29,6 +29,14 @@ from core.video.limits import PIXELS_ONLY, VideoLimits
 _PR_SET_PDEATHSIG = 1
 
 
+class LimitFields(TypedDict, total=False):
+    """Fields of `VideoLimits` that are not its defaults."""
+
+    max_frame_pixels: int
+    max_video_frames: float
+    max_video_seconds: float
+
+
 class Question(TypedDict):
     """What `answer` is asked; paths as text."""
 
@@ -37,8 +45,16 @@ class Question(TypedDict):
     video_stream: NotRequired[int | None]
     roi: dict[str, float]
     """Shares of the frame: x0, y0, x1, y1."""
-    limits: NotRequired[dict[str, int]]
-    """Fields of `VideoLimits`."""
+    limits: NotRequired[LimitFields]
+
+
+class Answer(TypedDict, total=False):
+    """What `answer` says: `error` alone, or the others."""
+
+    video: VideoSize
+    n_detections: int
+    error: dict[str, object]
+    """`BladeAtlasError.to_dict`."""
 
 
 class VideoSize(TypedDict):
@@ -101,7 +117,7 @@ def check_roi(settings: Settings) -> None:
         )
 
 
-def answer(question: Question) -> dict[str, object]:
+def answer(question: Question) -> Answer:
     """Check what a question names.
 
     Args:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from core.flags import Verdict
 from core.json_files import write_json
 from core.mapping.rows import DETECTION_COLUMNS
 from core.report.quality import build_quality, collect_flags, verdict_of
-from core.report.record import Item, Row, RunRecord
+from core.report.record import Document, Item, Row, RunRecord
 from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
 from core.report.summary import build_summary
 from core.report.tables import write_csv
@@ -22,8 +22,8 @@ class Report:
     """Published tables and objects of a run, as plain JSON values."""
 
     verdict: Verdict
-    summary: Mapping[str, object]
-    quality: Mapping[str, object]
+    summary: Document
+    quality: Document
     frames: Sequence[Row]
     cases: Sequence[Row]
     detections: Sequence[Row]

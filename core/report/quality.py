@@ -9,7 +9,7 @@ from core.checks.parallax import cases_parallax
 from core.flags import Flag, FlagFields, Severity, Verdict, error_codes
 from core.report.funnel import funnel, losses, support_counts
 from core.report.missing import missing_parts
-from core.report.record import Item, Row, RunRecord, TaskRecord
+from core.report.record import Document, Item, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
@@ -65,7 +65,7 @@ def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
 
 def build_quality(
     record: RunRecord, verdict: Verdict, flags: Sequence[Flag], cases: Sequence[Row], detections: Sequence[Row]
-) -> dict[str, object]:
+) -> Document:
     """The object of quality.json. Unknown = null; nothing is guessed."""
     defects = [] if verdict == Verdict.REFUSED else record.tables.defects
     steps = funnel(detections, len(defects), record.settings.mapping.method)

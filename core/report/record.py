@@ -17,6 +17,8 @@ Row = Mapping[str, Cell]
 """A row of a published table, by column."""
 Item = Mapping[str, Any]
 """An object of a JSON file that a stage wrote; docs/stage-results.md says which members it has."""
+Document = dict[str, Any]
+"""The object of summary.json or quality.json, nested as docs/outputs.md says."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from core.fingerprint import digest_of
 from core.flags import Verdict
 from core.graph import STAGES
 from core.mapping.rows import Outcome
-from core.report.record import Item, Row, RunRecord, TaskRecord
+from core.report.record import Document, Item, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.states import StageState, TaskState
@@ -16,7 +16,7 @@ from core.states import StageState, TaskState
 
 def build_summary(
     record: RunRecord, verdict: Verdict, detections: Sequence[Row], timeline: Sequence[Item], defects: Sequence[Item]
-) -> dict[str, object]:
+) -> Document:
     """The object of summary.json."""
     parameters = record.settings.model_dump(mode="json")
     return {

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import pycolmap
 
-from core.flags import Flag, Severity
+from core.flags import Flag, FlagFields, Severity
 from core.settings.groups import CameraSettings
 from core.stage import Facts
 
@@ -113,7 +113,7 @@ def _best_start(starts: Sequence[Facts], source_width: int) -> Facts | None:
     return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
 
 
-def _doubts(agreement: float | None) -> list[Facts]:
+def _doubts(agreement: float | None) -> list[FlagFields]:
     """Flags of an estimate; without any usable start nothing agrees."""
     share = agreement or 0.0
     if share >= MIN_AGREEMENT:

@@ -16,9 +16,9 @@ from core.checks.matches import match_agreement
 from core.checks.model import check_model
 from core.checks.stats import model_stats
 from core.settings import make_settings
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.viewgraph import PairTable, read_table
-from tests.core.sparse.scene import make_scene, view_graph, write_graph
+from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
 
 N, CUT = 20, 10
 
@@ -29,7 +29,7 @@ Made = tuple[pycolmap.Reconstruction, PairTable]
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     scene = make_scene(N, 600)
     graph = write_graph(tmp_path_factory.mktemp("wrong") / "graph", scene, view_graph(scene))
-    model = run_case(Case(graph, 0, N, make_settings().mapper, 0)).model
+    model = model_of(Case(graph, 0, N, make_settings().mapper, 0))
     assert model is not None
     return model, read_table(graph / "graph.npz")
 

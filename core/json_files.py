@@ -17,6 +17,6 @@ def write_json(path: Path, value: object) -> None:
 def read_json(path: Path) -> Any:
     """Read a JSON file in UTF-8.
 
-    The value is `Any`: files read here were written by this program, and the reader knows the form of its own.
+    The value has no type: files read here were written by this program, and the reader knows the form of its own.
     """
     return json.loads(path.read_text(encoding="utf-8"))

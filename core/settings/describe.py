@@ -58,7 +58,7 @@ def describe_options() -> list[OptionInfo]:
 
 def _at(tree: Mapping[str, object], name: str) -> object:
     """The value of a dotted name in nested objects."""
-    node: Any = tree
+    node: Any = tree  # an object at every step but the last
     for part in name.split("."):
         node = node[part]
     return node

@@ -61,7 +61,7 @@ class VideoInfo:
 
     @classmethod
     def from_dict(cls, row: dict[str, Any]) -> VideoInfo:
-        """Rebuild from `to_dict`."""
+        """Rebuild from what `to_dict` gave, as read from `video.json`."""
         row = dict(row)
         for name in ("average_rate", "time_base"):
             row[name] = Fraction(row[name])

@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-service soak mutate lock clean
+.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-service soak mutate versions lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -27,11 +27,16 @@ lint: setup
 docs: setup ## build the documentation into out/site; a broken link or a page that is in no menu fails
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
+# Unit tests wait for databases and child processes more than they compute, so two files run side by side. Whole
+# deployments and runs on the sample fill the cores and watch the clock: one after the other.
+UNIT := $(BIN)/pytest -n 2 --dist loadfile -m "not sample and not deployment"
+
 check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
-	$(BIN)/pytest -m "not sample and not deployment"
+	$(UNIT)
 
 test: lint docs ## everything, with whole deployments and the runs on the sample
-	$(BIN)/pytest -m "not long"
+	$(UNIT)
+	$(BIN)/pytest -m "(sample or deployment) and not long"
 
 test-long: setup ## the walk-through on real jobs and the kill test on the sample (a quarter of an hour)
 	$(BIN)/pytest -m long
@@ -53,6 +58,9 @@ soak: setup ## jobs through a whole deployment while its processes are killed (h
 
 mutate: setup ## change the code of AREA (placement, defects, annotations, points, plan) in 60 places, list what its tests miss
 	$(BIN)/bladeatlas-bench mutate $(AREA)
+
+versions: setup ## record the code behind each stage's version (SAME="how results were compared", when they are the same)
+	$(BIN)/python -m scripts.stage_versions --same "$(SAME)"
 
 lock: setup ## write requirements.lock from .venv
 	scripts/lock.sh

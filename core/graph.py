@@ -43,12 +43,16 @@ def _spec(name: str, *settings: str, version: int = 1, **more: Any) -> StageSpec
     return StageSpec(name, version, f"core.stages.{name}:run", settings, **more)
 
 
-_FOCAL_MAPPER = tuple(
-    f"mapper.{name}"
-    for name in ("min_model_size", "init_min_num_inliers", "abs_pose_min_num_inliers", "abs_pose_min_inlier_ratio")
-)
+def _options(group: str, *names: str) -> tuple[str, ...]:
+    return tuple(f"{group}.{name}" for name in names)
 
-_MATCHES = ("matching", "verification", "features.method", "seed")
+
+_MATCHER = (
+    *_options("matching", "method", "ratio", "auto_min_inliers", "auto_keypoints", "auto_min_inlier_share"),
+    "features.method",
+    "verification",
+    "seed",
+)
 
 STAGES: dict[str, StageSpec] = {
     spec.name: spec
@@ -59,52 +63,73 @@ STAGES: dict[str, StageSpec] = {
         _spec("features", "features", version=2, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec(
             "focal",
-            "camera",
+            *_options("camera", "principal_point", "focal_span", "focal_spans"),
+            *_options("mapper", "min_model_size", "init_min_num_inliers"),
+            *_options("mapper", "abs_pose_min_num_inliers", "abs_pose_min_inlier_ratio"),
             "matching.ratio",
             "verification",
-            *_FOCAL_MAPPER,
             "seed",
-            fan_out=True,
             version=2,
+            fan_out=True,
             weight=7,
         ),
-        _spec("camera", "camera", weight=0.1),
+        _spec("camera", *_options("camera", "fov_deg", "focal", "principal_point"), weight=0.1),
         _spec(
-            "matches",
-            "matching",
-            "verification",
-            "features.method",
-            "seed",
-            fan_out=True,
-            version=2,
-            weight=45,
-            weights=(LIGHTGLUE_WEIGHTS,),
+            "matches", *_MATCHER, "matching.window", version=2, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
-        _spec(
-            "bridge",
-            "matching",
-            "verification",
-            "features.method",
-            "seed",
-            version=2,
-            weight=1,
-            weights=(LIGHTGLUE_WEIGHTS,),
-        ),
+        _spec("bridge", *_MATCHER, version=2, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),
         _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=25),
         _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
         _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
         _spec("reduce_refine", "model.veto", "model.prefer_verified", version=3, weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
-        _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=12, weight=18),
+        _spec(
+            "extend",
+            "mapper",
+            *_options("model", "veto", "register_rest", "join", "drop_loose", "final_adjustment", "align_keypoints"),
+            *_options("model", "trim_tracks", "radial_terms", "loss_scale_px", "refine_principal_point"),
+            "seed",
+            "compute.threads",
+            version=12,
+            weight=18,
+        ),
         _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
-        _spec("undistort", "dense", "compute.chunk_views", weight=1),
-        _spec("depth", "dense", "seed", version=2, fan_out=True, queue="gpu", weight=24),
-        _spec("geometric", "dense", "seed", version=2, fan_out=True, queue="gpu", weight=21),
-        _spec("fuse", "fusion", "dense", weight=3),
+        _spec(
+            "undistort",
+            *_options("dense", "method", "views", "sources", "max_image_size_px", "scale", "max_stretch"),
+            weight=1,
+        ),
+        _spec(
+            "depth",
+            *_options("dense", "method", "levels", "iterations", "best_views"),
+            *_options("dense", "min_ncc", "min_triangulation_deg", "min_consistent"),
+            "seed",
+            version=2,
+            fan_out=True,
+            queue="gpu",
+            weight=24,
+        ),
+        _spec(
+            "geometric",
+            *_options("dense", "method", "iterations", "best_views", "geometric_passes"),
+            *_options("dense", "min_ncc", "min_triangulation_deg", "min_consistent"),
+            "seed",
+            version=2,
+            fan_out=True,
+            queue="gpu",
+            weight=21,
+        ),
+        _spec("fuse", "fusion", weight=3),
         _spec("mesh", "mesh", weight=2),
         _spec("map_defects", "mapping", version=10, weight=0.6),
-        _spec("timeline", "mapping", "timeline", version=6, weight=0.5),
+        _spec(
+            "timeline",
+            *_options("mapping", "method", "radius_fraction", "sigma_fraction"),
+            "timeline",
+            version=6,
+            weight=0.5,
+        ),
         _spec("gallery", "gallery", "mapping.method", version=3, reads_video=True, weight=1),
     )
 }
@@ -276,17 +301,3 @@ def _case(window: Window, depends: tuple[str, ...]) -> TaskSpec:
     if window.warm_from:
         depends = (*depends, key_of("coarse", part=window.warm_from))
     return TaskSpec(_case_key(window), depends, args, optional=True)
-
-
-def stage_settings(settings: Settings, spec: StageSpec) -> dict[str, Any]:
-    """The part of the settings that a stage reads, as JSON values, for its fingerprint."""
-    chosen: dict[str, Any] = {}
-    for name in spec.settings:
-        value: Any = settings
-        for part in name.split("."):
-            value = getattr(value, part)
-        if name == "overrides":
-            # Which of its own options the user set: those of other stages must not touch this one.
-            value = [option for option in value if option.split(".")[0] in spec.settings]
-        chosen[name] = value.model_dump(mode="json") if hasattr(value, "model_dump") else value
-    return chosen

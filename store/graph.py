@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from core.errors import BadInput
 from core.fingerprint import task_fingerprint
-from core.graph import STAGES, StageSpec, TaskSpec, expand, stage_settings
-from core.settings import Settings
+from core.graph import STAGES, StageSpec, TaskSpec, expand
+from core.settings import Settings, declared_values
 from core.stage import Facts
 from core.weight_files import weights_digest
 
@@ -42,7 +42,7 @@ class Graph:
         if spec.reads_annotations:
             inputs["input:annotations"] = annotations_sha256 or NO_RESULT
         inputs.update({f"weights:{name}": weights_digest(name) for name in spec.weights})
-        chosen = stage_settings(settings, spec)
+        chosen = declared_values(settings, spec.settings)
         return task_fingerprint(task.stage, spec.version, chosen, dict(task.args), inputs)
 
 

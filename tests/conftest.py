@@ -11,6 +11,7 @@ import socket
 import sys
 from collections import Counter
 from collections.abc import Collection, Iterator
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -70,6 +71,19 @@ def _absent(item: pytest.Item, name: str, why: str) -> None:
         pytest.fail(f"{why}, and BLADEATLAS_REQUIRE_SERVICES=1")
     item.config.stash[_SKIPPED][name] += 1
     pytest.skip(why)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """A process that runs tests for another one tells it what was skipped."""
+    if hasattr(session.config, "workeroutput"):
+        skipped = session.config.stash[_SKIPPED]
+        session.config.workeroutput["skipped"] = dict(skipped)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any, error: object) -> None:
+    """The process that starts others adds up what they skipped."""
+    node.config.stash[_SKIPPED].update(getattr(node, "workeroutput", {}).get("skipped", {}))
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:

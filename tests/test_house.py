@@ -289,3 +289,13 @@ def _horner_depth(node: ast.AST) -> int:
         case ast.BinOp(_, ast.Mult(), ast.BinOp(_, ast.Add(), inner)):
             return 1 + _horner_depth(inner)
     return int(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult))
+
+
+def test_the_newest_version_in_the_changelog_is_that_of_the_package() -> None:
+    versions = re.findall(
+        r"^## (\d+\.\d+\.\d+) - \d{4}-\d{2}-\d{2}$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE
+    )
+    declared = re.search(r'^version = "(.*)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    assert declared is not None
+    assert versions[0] == declared.group(1)
+    assert sorted(versions, key=lambda text: [int(part) for part in text.split(".")], reverse=True) == versions

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from core.errors import BladeAtlasError, DiskFull, ResourceError
-from core.settings import Settings
+from core.settings import Settings, only_declared
 from core.stage import StageResult, StageTask
 from store.disk import NO_SPACE, disk_is_full
 from worker.results import seal
@@ -114,7 +114,7 @@ def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) 
     task = StageTask(
         key=spec["key"],
         args=spec["args"],
-        settings=Settings.model_validate(spec["settings"]),
+        settings=only_declared(Settings.model_validate(spec["settings"]), spec["declared"]),
         inputs={key: Path(path) for key, path in spec["inputs"].items()},
         facts=spec["facts"],
         video=Path(spec["video"]),

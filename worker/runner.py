@@ -146,6 +146,7 @@ class TaskRunner:
             "fingerprint": lease.fingerprint,
             "args": dict(lease.args),
             "settings": dict(lease.settings),
+            "declared": list(stage.settings),
             "inputs": {key: str(self.results.path(path)) for key, path in lease.inputs.items()},
             "facts": {key: dict(facts) for key, facts in lease.facts.items()},
             "video": str(self.inputs.video(lease.files, needed=stage.reads_video)),

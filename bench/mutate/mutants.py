@@ -11,6 +11,7 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 COMPARISONS: dict[type[ast.cmpop], tuple[str, ...]] = {
     ast.Lt: ("<=", ">="),
@@ -70,7 +71,8 @@ class Mutant:
         return f"{self.path}:{number + 1}\n    - {old}\n    + {new}"
 
 
-def mutants_of(path: str, source: bytes) -> list[Mutant]:
+@cache
+def mutants_of(path: str, source: bytes) -> tuple[Mutant, ...]:
     """All mutants of a module, sorted, without those that do not parse or mean what the module means."""
     tree = ast.parse(source)
     original = ast.dump(tree)
@@ -82,7 +84,7 @@ def mutants_of(path: str, source: bytes) -> list[Mutant]:
             continue
         if changed != original:
             found.add(mutant)
-    return sorted(found)
+    return tuple(sorted(found))
 
 
 def _head(statement: ast.stmt) -> tuple[int, int]:

@@ -37,7 +37,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int, n_pairs: int = 60) -
     methods: dict[str, MatchSettings] = {
         name: settings.matching.model_copy(update={"method": name}) for name in ("auto", "lightglue")
     }
-    matchers = {name: PairMatcher(method, settings.features, verifier) for name, method in methods.items()}
+    matchers = {name: PairMatcher(method, verifier, settings.features.method) for name, method in methods.items()}
     _warm_up(matchers, features, pairs[0])
     seconds = dict.fromkeys(matchers, 0.0)
     matched: dict[str, list[MatchedPair]] = {name: [] for name in matchers}

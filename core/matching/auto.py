@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
 from core.matched_pair import LIGHTGLUE, MUTUAL_NEAREST, MatchedPair
 from core.matching.mutual_nearest import Matches, mutual_nearest, unit_descriptors
-from core.settings.groups import FeatureSettings, MatchSettings
+from core.settings.groups import MatchSettings
 from core.verification import STRONG_INLIERS, Verifier
 
 if TYPE_CHECKING:
@@ -48,13 +48,13 @@ class Patience:
 class PairMatcher:
     """Matches and verifies pairs of frames that share one camera."""
 
-    def __init__(self, matching: MatchSettings, features: FeatureSettings, verifier: Verifier) -> None:
+    def __init__(self, matching: MatchSettings, verifier: Verifier, features: Literal["disk", "sift"] = "disk") -> None:
         """Refuse, as `BadInput`, LightGlue for SIFT: there are no weights for it."""
-        if matching.method == "lightglue" and features.method != "disk":
+        if matching.method == "lightglue" and features != "disk":
             raise BadInput("matching.method 'lightglue' needs features.method 'disk'", where="matching.method")
         self._settings = matching
         self._use_lightglue = matching.method == "lightglue"
-        self._may_rematch = matching.method == "auto" and features.method == "disk"
+        self._may_rematch = matching.method == "auto" and features == "disk"
         self._verifier = verifier
         self._network: LightGlueMatcher | None = None
         self._units = _LastUsed(lambda features: unit_descriptors(features.descriptors))

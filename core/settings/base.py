@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -10,10 +10,22 @@ THESIS = "thesis"
 """Source mark: the value of the MSc thesis (chapter 3)."""
 
 
+class UndeclaredOption(AttributeError):
+    """A stage read an option that its spec does not declare, so that its result would not be named by it."""
+
+
 class Group(BaseModel):
     """A frozen group of options; unknown names and non-finite numbers are refused."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    if not TYPE_CHECKING:  # a type checker would take it for any name
+
+        def __getattr__(self, name: str) -> Any:
+            """Called only for what is not there: say so clearly where it is a declared option that was left out."""
+            if name in type(self).model_fields:
+                raise UndeclaredOption(f"the stage does not declare that it reads {type(self).__name__}.{name}")
+            return super().__getattr__(name)
 
 
 def option(default: Any, meaning: str, *, source: str, unit: str = "", **limits: Any) -> Any:

@@ -79,7 +79,7 @@ def find_focal(
     Args:
         span: half-open interval of frames.
         camera: `pycolmap.Camera` with the start value.
-        settings: of the run; its verification threshold, mapper and seed are used.
+        settings: of the run, with what the stage `focal` declares.
         load: features of a frame.
         report: progress in [0, 1].
     """
@@ -91,11 +91,10 @@ def find_focal(
     everything = {frame: np.arange(len(xy)) for frame, xy in zip(frames.indices, frames.keypoints, strict=True)}
     cache = thin_cache(table, frames, everything, settings.verification.min_inliers)
     ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
-    options = mapper_options(settings.mapper, threads=1, seed=settings.seed, tuned=True)
-    options.multiple_models = False
     # One radial term is little enough to be free from the start.
-    options.ba_refine_extra_params = True
-    options.mapper.abs_pose_refine_extra_params = True
+    mapper = settings.mapper.model_copy(update={"refine_distortion": True})
+    options = mapper_options(mapper, threads=1, seed=settings.seed, tuned=True)
+    options.multiple_models = False
     models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
     model = best_model(models)
     if model is None:
@@ -122,7 +121,7 @@ def _match(
     indices = tuple(range(*span))
     features = {index: strongest(load(index), KEYPOINTS) for index in indices}
     matching = settings.matching.model_copy(update={"method": "mutual_nearest"})
-    matcher = PairMatcher(matching, settings.features, Verifier(camera, settings.verification, settings.seed))
+    matcher = PairMatcher(matching, Verifier(camera, settings.verification, settings.seed))
     pairs = [(a, a + gap) for a in indices for gap in GAPS if a + gap < span[1]]
     matched = []
     for row, (a, b) in enumerate(pairs):

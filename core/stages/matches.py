@@ -34,7 +34,7 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
     settings = task.settings
     camera = read_camera(task.input("camera") / "camera.json")
     verifier = Verifier(camera, settings.verification, settings.seed)
-    matcher = PairMatcher(settings.matching, settings.features, verifier)
+    matcher = PairMatcher(settings.matching, verifier, settings.features.method)
     files = feature_files(folder for _, folder in task.fan_in("features"))
     order = sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair))
     last_use = {frame: row for row, pair in enumerate(order) for frame in pair}

@@ -67,13 +67,22 @@ def open_files() -> Counter[str]:
     return found
 
 
+@pytest.fixture
+def started() -> Callable[[], set[int]]:
+    """Processes that this one has started since the test began; helpers of other tests live as long as all of them."""
+    before = {child.pid for child in psutil.Process().children()}
+    return lambda: {child.pid for child in psutil.Process().children()} - before
+
+
 def test_a_hundred_posts_of_one_owner_do_not_keep_another_waiting(
-    backend: Backend, serve: Callable[[FastAPI], str], monkeypatch: pytest.MonkeyPatch
+    backend: Backend,
+    serve: Callable[[FastAPI], str],
+    monkeypatch: pytest.MonkeyPatch,
+    started: Callable[[], set[int]],
 ) -> None:
     monkeypatch.setattr("api.probing._ENTRY", "tests.api.slow_probe")
     flood = Flood(backend.with_settings(max_probes_waiting_per_owner=40, probe_seconds=60), serve)
     httpx.get(f"{flood.address}/healthz")
-    own = psutil.Process()
     files = open_files()
     began = time.monotonic()
     answer, done = asyncio.run(flood.run(100, b"any bytes", waiting=40))
@@ -88,7 +97,7 @@ def test_a_hundred_posts_of_one_owner_do_not_keep_another_waiting(
     assert time.monotonic() - began < 30
 
     # All clients have gone: nobody waits for them any more, and nothing of theirs is left.
-    wait_until(lambda: flood.turns.waiting == 0 and not own.children())
+    wait_until(lambda: flood.turns.waiting == 0 and not started())
     wait_until(lambda: leftovers(backend) == [])
     wait_until(lambda: sum(open_files().values()) <= sum(files.values()))
     assert backend.db.engine.pool.checkedout() == 0  # type: ignore[attr-defined]
@@ -106,21 +115,25 @@ def test_real_looks_take_turns(backend: Backend, serve: Callable[[FastAPI], str]
     wait_until(lambda: flood.turns.waiting == 0)
 
 
-def test_a_look_beyond_its_processor_time_is_ended(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_look_beyond_its_processor_time_is_ended(
+    backend: Backend, monkeypatch: pytest.MonkeyPatch, started: Callable[[], set[int]]
+) -> None:
     monkeypatch.setattr("api.probing._ENTRY", "tests.api.slow_probe")
     client = client_of(backend.with_settings(probe_seconds=1, probe_memory_bytes=8 << 30))
     answer = post(client, parameters='{"options": {"roi.x0": 0.5}}')
     assert (answer.status_code, answer.json()["code"]) == (422, "probe_timeout"), answer.text
     assert "probe_seconds" in answer.json()["detail"]
-    assert not psutil.Process().children()
+    assert not started()
 
 
-def test_a_machine_that_is_too_busy_is_not_the_videos_fault(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_machine_that_is_too_busy_is_not_the_videos_fault(
+    backend: Backend, monkeypatch: pytest.MonkeyPatch, started: Callable[[], set[int]]
+) -> None:
     monkeypatch.setattr("api.probing._ENTRY", "tests.api.slow_probe")
     answer = post(client_of(backend.with_settings(probe_seconds=0.05)))
     assert (answer.status_code, answer.json()["code"], answer.json()["retryable"]) == (503, "probe_busy", True)
     assert answer.headers["Retry-After"]
-    assert not psutil.Process().children()
+    assert not started()
 
 
 def test_a_video_beyond_a_limit_is_refused(backend: Backend, client: TestClient) -> None:

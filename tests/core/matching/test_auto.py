@@ -19,7 +19,7 @@ from tests.core.making_views import bumpy_points, fisheye, pose, true_matches, v
 
 def _matcher(**options: Any) -> PairMatcher:
     settings = make_settings(options={name.replace("__", "."): value for name, value in options.items()})
-    return PairMatcher(settings.matching, settings.features, Verifier(fisheye(), settings.verification))
+    return PairMatcher(settings.matching, Verifier(fisheye(), settings.verification), settings.features.method)
 
 
 def _frames(blur: float) -> tuple[FrameFeatures, FrameFeatures, np.ndarray]:

@@ -6,9 +6,9 @@ A flag is a small fact. Stages put flags into their facts, the report collects t
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from typing import NotRequired, TypedDict
 
 from core.errors import StageFailed
 
@@ -66,6 +66,16 @@ FLAG_CODES: Mapping[str, str] = {
 """Every code that can appear, with its meaning. A code that is not here cannot be raised."""
 
 
+class FlagFields(TypedDict):
+    """The form of a flag in facts and in `quality.json`."""
+
+    code: str
+    severity: str
+    value: NotRequired[float | None]
+    threshold: NotRequired[float | None]
+    where: NotRequired[str]
+
+
 @dataclass(frozen=True)
 class Flag:
     """One finding of a check.
@@ -89,20 +99,26 @@ class Flag:
         """One clause for people."""
         return FLAG_CODES[self.code]
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> FlagFields:
         """The form of `quality.json`: code, severity, value, threshold, where; numbers rounded to 6 digits."""
-        row = asdict(self)
-        for name in ("value", "threshold"):
-            if row[name] is not None:
-                row[name] = float(f"{row[name]:.6g}")
-        return row
+        return {
+            "code": self.code,
+            "severity": self.severity,
+            "value": _rounded(self.value),
+            "threshold": _rounded(self.threshold),
+            "where": self.where,
+        }
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> Flag:
+    def from_dict(cls, row: FlagFields) -> Flag:
         """Rebuild from `to_dict`; unknown codes and severities raise `StageFailed`."""
         return cls(
             row["code"], _severity(row["severity"]), row.get("value"), row.get("threshold"), row.get("where", "")
         )
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else float(f"{value:.6g}")
 
 
 def _severity(value: str) -> Severity:
@@ -117,6 +133,6 @@ def worst(flags: list[Flag]) -> Severity | None:
     return max((flag.severity for flag in flags), key=SEVERITIES.index, default=None)
 
 
-def error_codes(checks: Iterable[Mapping[str, Any]]) -> str:
+def error_codes(checks: Iterable[Mapping[str, object]]) -> str:
     """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is vetoed."""
     return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == Severity.ERROR}))

@@ -16,7 +16,7 @@ import signal
 import sys
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, TypedDict
 
 from core.annotations.parse import load_annotations
 from core.errors import BadInput, BladeAtlasError
@@ -27,6 +27,43 @@ from core.video.decode import VideoReader
 from core.video.limits import PIXELS_ONLY, VideoLimits
 
 _PR_SET_PDEATHSIG = 1
+
+
+class LimitFields(TypedDict, total=False):
+    """Fields of `VideoLimits` that are not its defaults."""
+
+    max_frame_pixels: int
+    max_video_frames: float
+    max_video_seconds: float
+
+
+class Question(TypedDict):
+    """What `answer` is asked; paths as text."""
+
+    video: str
+    annotations: NotRequired[str | None]
+    video_stream: NotRequired[int | None]
+    roi: dict[str, float]
+    """Shares of the frame: x0, y0, x1, y1."""
+    limits: NotRequired[LimitFields]
+
+
+class Answer(TypedDict, total=False):
+    """What `answer` says: `error` alone, or the others."""
+
+    video: VideoSize
+    n_detections: int
+    error: dict[str, object]
+    """`BladeAtlasError.to_dict`."""
+
+
+class VideoSize(TypedDict):
+    """What `check_video` says of a video; sizes in px."""
+
+    width: int
+    height: int
+    codec: str
+    declared_frames: int
 
 
 def check_input(video: Path, annotations: Path | None, settings: Settings) -> None:
@@ -41,7 +78,7 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     check_roi(settings)
 
 
-def check_video(video: Path, stream: int | None = None, limits: VideoLimits = PIXELS_ONLY) -> dict[str, Any]:
+def check_video(video: Path, stream: int | None = None, limits: VideoLimits = PIXELS_ONLY) -> VideoSize:
     """Size and codec of a video; `BadInput` unless the file is one whose first frames decode.
 
     What the header states is held against `limits` before a frame is decoded: `too_many_pixels`,
@@ -80,7 +117,7 @@ def check_roi(settings: Settings) -> None:
         )
 
 
-def answer(question: dict[str, Any]) -> dict[str, Any]:
+def answer(question: Question) -> Answer:
     """Check what a question names.
 
     Args:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TypeVar
 
 from numba import njit
 
+Function = TypeVar("Function", bound=Callable[..., object])
 
-def compiled(function: Any, **options: Any) -> Any:
-    """Machine code that runs without the GIL, cached on disk for later processes.
+
+def compiled(function: Function, **options: object) -> Function:
+    """The same function as machine code that runs without the GIL, cached on disk for later processes.
 
     numba keeps the cache beside the source, or in the user's cache folder when that is read-only. Where neither can be
     written the function is compiled in each process. Compilation is single-threaded on purpose: callers split rows
@@ -19,6 +22,7 @@ def compiled(function: Any, **options: Any) -> Any:
         options: of `numba.njit`.
     """
     try:
-        return njit(cache=True, nogil=True, **options)(function)
+        made: Function = njit(cache=True, nogil=True, **options)(function)
     except RuntimeError:
-        return njit(nogil=True, **options)(function)
+        made = njit(nogil=True, **options)(function)
+    return made

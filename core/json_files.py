@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 
-def write_json(path: Path, value: Any) -> None:
+def write_json(path: Path, value: object) -> None:
     """Write JSON in UTF-8, keys in their given order; ValueError for a number that is not finite."""
     text = json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -15,5 +15,8 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_json(path: Path) -> Any:
-    """Read a JSON file in UTF-8."""
+    """Read a JSON file in UTF-8.
+
+    The value has no type: files read here were written by this program, and the reader knows the form of its own.
+    """
     return json.loads(path.read_text(encoding="utf-8"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -17,6 +17,7 @@ from core.viewpoint import Viewpoint
 
 F32 = NDArray[np.float32]
 U8 = NDArray[np.uint8]
+Value = TypeVar("Value", bound=np.generic)
 
 BACKGROUND_RGB = (236, 238, 240)
 BACK_RGB = (0.46, 0.48, 0.50)
@@ -61,9 +62,7 @@ class Renderer:
     def __init__(self, mesh: Mesh, threads: int = 1) -> None:
         """Take a mesh with colours (grey without) and, optionally, the vertex property ``defect_id``."""
         self._threads = threads
-        open3d: Any = o3d
-        self._tensor = open3d.core.Tensor
-        self._scene = open3d.t.geometry.RaycastingScene(nthreads=threads)
+        self._scene = o3d.t.geometry.RaycastingScene(nthreads=threads)
         self._scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
         self._faces = mesh.faces
         self._normals = vertex_normals(mesh).astype(np.float32)
@@ -112,7 +111,7 @@ class Renderer:
         return Picture(picture, defect[samples // 2 :: samples, samples // 2 :: samples])
 
     def _cast(self, rays: F32) -> _Hits:
-        answer = self._scene.cast_rays(self._tensor(rays), nthreads=self._threads)
+        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=self._threads)
         depth = answer["t_hit"].numpy()
         hit = np.isfinite(depth)
         face = answer["primitive_ids"].numpy()[hit].astype(np.int64)
@@ -166,7 +165,7 @@ class Renderer:
         for direction in _sphere_points(_OCCLUSION_RAYS):
             towards = normal + direction  # a unit normal plus a point of the unit sphere is cosine-distributed
             towards /= np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-6)
-            rays = self._tensor(np.hstack([start, towards]).astype(np.float32))
+            rays = o3d.core.Tensor(np.hstack([start, towards]).astype(np.float32))
             free = self._scene.cast_rays(rays, nthreads=self._threads)["t_hit"].numpy()
             open_share += np.clip(free / reach, 0, 1)
         field = np.ones((height, width), np.float32)
@@ -174,8 +173,7 @@ class Renderer:
         solid = hits.hit.astype(np.float32)
         weight = np.maximum(cv2.blur(solid, (3, 3)), 1e-6)
         smooth = cv2.blur(field * solid, (3, 3)) / weight
-        shadow: F32 = cv2.resize(np.where(hits.hit, smooth, 1.0).astype(np.float32), size)
-        return shadow
+        return np.asarray(cv2.resize(np.where(hits.hit, smooth, 1.0).astype(np.float32), size), np.float32)
 
 
 def _interpolate(values: F32, corners: NDArray[np.int32], share: F32) -> F32:
@@ -183,7 +181,7 @@ def _interpolate(values: F32, corners: NDArray[np.int32], share: F32) -> F32:
     return mixed
 
 
-def _scatter(hit: NDArray[np.bool_], values: NDArray[Any], fill: float = 0) -> NDArray[Any]:
+def _scatter(hit: NDArray[np.bool_], values: NDArray[Value], fill: float = 0) -> NDArray[Value]:
     """Values of the hit pixels back in the picture."""
     out = np.full(hit.shape + values.shape[1:], fill, dtype=values.dtype)
     out[hit] = values

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
 import numpy as np
@@ -41,7 +40,16 @@ class TwoViewGeometry:
     """Median angle between the rays of the inliers; 0 when the views did not move apart."""
 
 
-def camera_from_dict(values: Mapping[str, Any]) -> Any:
+class CameraFields(TypedDict):
+    """What ``camera.json`` says of the lens, in pixels; it has further members."""
+
+    model: str
+    width: int
+    height: int
+    params: list[float]
+
+
+def camera_from_dict(values: CameraFields) -> pycolmap.Camera:
     """`pycolmap.Camera` number 1 from the content of ``camera.json``.
 
     The focal length is marked as a prior: without it COLMAP 4.2 calls every fisheye pair degenerate.
@@ -56,7 +64,7 @@ def camera_from_dict(values: Mapping[str, Any]) -> Any:
     )
 
 
-def read_camera(path: Path) -> Any:
+def read_camera(path: Path) -> pycolmap.Camera:
     """`camera_from_dict` of a file."""
     return camera_from_dict(json.loads(path.read_text(encoding="utf-8")))
 
@@ -64,7 +72,7 @@ def read_camera(path: Path) -> Any:
 class Verifier:
     """Verifies pairs of frames that share `camera`; the same input gives the same output."""
 
-    def __init__(self, camera: Any, settings: VerificationSettings, seed: int = 0) -> None:
+    def __init__(self, camera: pycolmap.Camera, settings: VerificationSettings, seed: int = 0) -> None:
         """Take the camera as `camera_from_dict` makes it."""
         self._camera = camera
         options = pycolmap.TwoViewGeometryOptions()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
 import numpy as np
@@ -113,7 +112,7 @@ def table_facts(table: PairTable) -> dict[str, int]:
     }
 
 
-def graph_facts(table: PairTable, n_frames: int) -> dict[str, Any]:
+def graph_facts(table: PairTable, n_frames: int) -> dict[str, float]:
     """Counts of the whole graph; the largest component counts frames joined by verified pairs."""
     verified = table.verified
     first, second = table.pairs[verified].T
@@ -128,7 +127,9 @@ def graph_facts(table: PairTable, n_frames: int) -> dict[str, Any]:
     }
 
 
-def write_database(path: Path, camera: Any, keypoints: Iterable[NDArray[np.float32]], table: PairTable) -> None:
+def write_database(
+    path: Path, camera: pycolmap.Camera, keypoints: Iterable[NDArray[np.float32]], table: PairTable
+) -> None:
     """Write COLMAP's database: one camera, a trivial rig, one image and frame for every item of `keypoints`.
 
     Image `i` is called ``{i:04d}.jpg`` and has image_id = frame_id = i + 1. The mapper reads verified
@@ -152,7 +153,7 @@ def write_database(path: Path, camera: Any, keypoints: Iterable[NDArray[np.float
             database.write_two_view_geometry(first + 1, second + 1, _geometry(table, row))
 
 
-def _write_image(database: Any, camera: Any, index: int, points: NDArray[np.float32]) -> None:
+def _write_image(database: pycolmap.Database, camera: pycolmap.Camera, index: int, points: NDArray[np.float32]) -> None:
     image = pycolmap.Image(name=f"{index:04d}.jpg", camera_id=camera.camera_id, image_id=index + 1)
     database.write_image(image, use_image_id=True)
     frame = pycolmap.Frame()
@@ -162,7 +163,7 @@ def _write_image(database: Any, camera: Any, index: int, points: NDArray[np.floa
     database.write_keypoints(index + 1, np.ascontiguousarray(points, np.float32))
 
 
-def _geometry(table: PairTable, row: int) -> Any:
+def _geometry(table: PairTable, row: int) -> pycolmap.TwoViewGeometry:
     """One row as COLMAP's two-view geometry, its motion included."""
     geometry = pycolmap.TwoViewGeometry()
     geometry.config = int(table.config[row])

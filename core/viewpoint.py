@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, radians, sin, tan
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,12 +106,16 @@ def framed(points: F64, forward: F64, down: F64, aspect: float, fov_deg: float =
     return Viewpoint(eye @ axes, right, down, forward, fov_deg)
 
 
-def choose_two(picture: Any, points: F64, cam_from_world: F64, aspect: float) -> tuple[Viewpoint, Viewpoint]:
+Sketch = Callable[[Viewpoint, int, int], tuple[NDArray[np.int32], NDArray[np.bool_]]]
+"""Of a viewpoint, a width and a height in px: the (h, w) numbers of the defects seen, -1 for none, and the (h, w) mask
+of surface that is seen from its front."""
+
+
+def choose_two(picture: Sketch, points: F64, cam_from_world: F64, aspect: float) -> tuple[Viewpoint, Viewpoint]:
     """Two viewpoints at least 45 degrees apart that show most defects, each from the side of the cameras.
 
     Args:
-        picture: function of (viewpoint, width, height) giving the (h, w) defect numbers seen (-1 none) and
-            the (h, w) mask of surface seen from its front.
+        picture: gives small pictures of the surface.
         points: (n, 3) what is to be framed.
         cam_from_world: (n, 3, 4) poses of registered images.
     """

@@ -76,7 +76,8 @@ def _absent(item: pytest.Item, name: str, why: str) -> None:
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """A process that runs tests for another one tells it what was skipped."""
     if hasattr(session.config, "workeroutput"):
-        session.config.workeroutput["skipped"] = dict(session.config.stash[_SKIPPED])
+        skipped = session.config.stash[_SKIPPED]
+        session.config.workeroutput["skipped"] = dict(skipped)
 
 
 @pytest.hookimpl(optionalhook=True)

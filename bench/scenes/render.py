@@ -127,7 +127,7 @@ class Painter:
 
     def _exposed(self, image: F64) -> U8:
         """Through the sensor: blur of the optics, exposure, noise, text of the interface."""
-        image = cv2.GaussianBlur(image, (0, 0), 0.55)
+        image = np.asarray(cv2.GaussianBlur(image, (0, 0), 0.55), np.float64)
         scale = 0.42 / max(float(np.percentile(image, 75)), LEAST_LIGHT)
         exposed = np.clip(image * scale, 0.0, None)
         toned = exposed / (1.0 + np.maximum(0.0, exposed - 0.8))

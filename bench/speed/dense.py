@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bench.speed.finished import FinishedRun
 from bench.speed.timing import Row, Table, interleaved
@@ -96,19 +96,27 @@ def _pair(scene: DenseScene, view: DenseView, source: str) -> F32:
     R1, R2, P1, P2, *_ = cv2.stereoRectify(K, NO_DISTORTION, K, NO_DISTORTION, size, R, t, flags=0, alpha=-1)
     vertical = abs(P2[1, 3]) > abs(P2[0, 3])
     left, right = (
-        cv2.remap(scene.grey(name), *cv2.initUndistortRectifyMap(K, None, R_, P, size, cv2.CV_32FC1), cv2.INTER_LINEAR)
+        _u8(
+            cv2.remap(
+                scene.grey(name), *cv2.initUndistortRectifyMap(K, None, R_, P, size, cv2.CV_32FC1), cv2.INTER_LINEAR
+            )
+        )
         for name, R_, P in ((view.name, R1, P1), (source, R2, P2))
     )
     shift = P2[1, 3] if vertical else P2[0, 3]
     if vertical:
-        left, right = cv2.transpose(left), cv2.transpose(right)
+        left, right = _u8(cv2.transpose(left)), _u8(cv2.transpose(right))
     offset = (P1[1, 2] - P2[1, 2]) if vertical else (P1[0, 2] - P2[0, 2])
     disparity = _disparity(left, right, _range(shift, offset, view))
     if vertical:
-        disparity = cv2.transpose(disparity)
+        disparity = np.asarray(cv2.transpose(disparity), np.float32)
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = np.where(np.isfinite(disparity), -shift / (disparity - offset), 0.0)
-    return _to_view(depth.astype(np.float32), R1, P1, pinhole, view)
+    return _to_view(depth.astype(np.float32), np.asarray(R1, np.float64), np.asarray(P1, np.float64), pinhole, view)
+
+
+def _u8(picture: ArrayLike) -> NDArray[np.uint8]:
+    return np.asarray(picture, np.uint8)
 
 
 def _relative(reference: Pose, source: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

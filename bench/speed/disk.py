@@ -24,7 +24,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int, n_frames: int = 3) -
     images = run.images()
     chosen = [read_image(images[i]) for i in np.linspace(0, len(images) - 1, n_frames).astype(int)]
     theirs = DISK().eval()
-    theirs.load_state_dict(load_weights(DISK_WEIGHTS)["extractor"])
+    theirs.load_state_dict(load_weights(DISK_WEIGHTS, "extractor"))
     ours = Disk(threads=threads)
 
     def kornia(image: Any) -> Any:

@@ -6,7 +6,6 @@ import json
 import math
 import re
 from fractions import Fraction
-from typing import Any
 
 from core.annotations.model import Polygon
 from core.errors import BadInput
@@ -25,7 +24,7 @@ def invalid(path: str, what: str, code: str = "annotations_invalid") -> BadInput
     return BadInput(f"annotations: {path} {what}", code=code, where=path)
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """A value for a message: short JSON, or only what kind of value it is."""
     if isinstance(value, dict):
         return "an object"
@@ -60,26 +59,26 @@ def parse_time(key: str) -> Fraction:
     raise invalid(f"key {path}", "is not a time (seconds such as 12.5, or HH:MM:SS.fff)", "bad_time")
 
 
-def as_object(value: Any, path: str) -> dict[str, Any]:
+def as_object(value: object, path: str) -> dict[str, object]:
     """`value` if it is an object."""
     if not isinstance(value, dict):
         raise invalid(path, f"must be an object, not {shown(value)}")
     return value
 
 
-def as_list(value: Any, path: str) -> list[Any]:
+def as_list(value: object, path: str) -> list[object]:
     """`value` if it is a list."""
     if not isinstance(value, list):
         raise invalid(path, f"must be a list, not {shown(value)}")
     return value
 
 
-def as_list_or_null(value: Any, path: str) -> list[Any]:
+def as_list_or_null(value: object, path: str) -> list[object]:
     """`value` if it is a list; null is a list without members, as tools write it where they found nothing."""
     return [] if value is None else as_list(value, path)
 
 
-def as_label(value: Any, path: str) -> str:
+def as_label(value: object, path: str) -> str:
     """`value` if it is a text with something in it that UTF-8 and a database can hold."""
     if not isinstance(value, str) or not value.strip():
         raise invalid(path, f"must be a text that is not empty, not {shown(value)}")
@@ -92,7 +91,7 @@ def as_label(value: Any, path: str) -> str:
     return value
 
 
-def as_number(value: Any, path: str) -> float:
+def as_number(value: object, path: str) -> float:
     """`value` as a finite float; true and false are not numbers."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise invalid(path, f"must be a number, not {shown(value)}")
@@ -105,7 +104,7 @@ def as_number(value: Any, path: str) -> float:
     return number
 
 
-def as_share(value: Any, path: str, code: str) -> float:
+def as_share(value: object, path: str, code: str) -> float:
     """`value` as a number in [0, 1]."""
     number = as_number(value, path)
     if not -_EDGE <= number <= 1 + _EDGE:
@@ -114,12 +113,12 @@ def as_share(value: Any, path: str, code: str) -> float:
     return min(1.0, max(0.0, number))
 
 
-def as_score(value: Any, path: str) -> float | None:
+def as_score(value: object, path: str) -> float | None:
     """A score in [0, 1], or None when there is none."""
     return None if value is None else as_share(value, path, "bad_score")
 
 
-def as_track_id(value: Any, path: str) -> str | int | None:
+def as_track_id(value: object, path: str) -> str | int | None:
     """A text or a whole number that names a track, or None."""
     if value is None:
         return None
@@ -128,7 +127,7 @@ def as_track_id(value: Any, path: str) -> str | int | None:
     return as_label(value, path) if isinstance(value, str) else value
 
 
-def as_box(value: Any, path: str) -> Box:
+def as_box(value: object, path: str) -> Box:
     """Four shares [x1, y1, x2, y2] with x1 < x2 and y1 < y2."""
     items = as_list(value, path)
     if len(items) != 4:
@@ -141,7 +140,7 @@ def as_box(value: Any, path: str) -> Box:
     return (x1, y1, x2, y2)
 
 
-def as_polygon(value: Any, path: str) -> Polygon:
+def as_polygon(value: object, path: str) -> Polygon:
     """Corners [[x, y], ...] in shares; how many is for the caller to judge."""
     corners = []
     for i, item in enumerate(as_list(value, path)):

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 from core.annotations.checks import shown
 from core.annotations.clocks import CLOCKS, FROM_ZERO, MEANINGS, Clock, clock_named, possible_clocks
@@ -53,7 +52,7 @@ class Fitted:
         """Clocks of the other readings."""
         return tuple(one.clock for one in self.others)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """JSON form, times in s."""
         one = self.reading
         return {

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 from core.annotations import checks
 from core.annotations.model import Annotations, Detection, Entry, Mask, Polygon
@@ -20,7 +20,7 @@ def load_annotations(path: Path | None) -> Annotations:
     return Annotations() if path is None else parse_annotations(read_json(path))
 
 
-def parse_annotations(value: Any) -> Annotations:
+def parse_annotations(value: object) -> Annotations:
     """Check a JSON value and give it types.
 
     Args:
@@ -47,14 +47,14 @@ def parse_annotations(value: Any) -> Annotations:
         boxes = checks.as_list_or_null(members.get("detections"), f"{path}.detections")
         detections = []
         for i, item in enumerate(boxes):
-            fields = _detection_fields(item, f"{path}.detections[{i}]", masks, warnings)
-            detections.append(Detection(id=next_id, key=key, time=time, **fields))
+            here = f"{path}.detections[{i}]"
+            detections.append(_detection(checks.as_object(item, here), here, (next_id, key, time), masks, warnings))
             next_id += 1
         entries.append(Entry(key, time, tuple(detections), masks))
     return Annotations(tuple(entries), tuple(warnings))
 
 
-def _masks(value: Any, path: str, warnings: list[str]) -> tuple[Mask, ...]:
+def _masks(value: object, path: str, warnings: list[str]) -> tuple[Mask, ...]:
     masks = []
     for i, item in enumerate(checks.as_list_or_null(value, path)):
         here = f"{path}[{i}]"
@@ -66,22 +66,28 @@ def _masks(value: Any, path: str, warnings: list[str]) -> tuple[Mask, ...]:
     return tuple(masks)
 
 
-def _detection_fields(item: Any, path: str, masks: Sequence[Mask], warnings: list[str]) -> dict[str, Any]:
-    members = checks.as_object(item, path)
+def _detection(
+    members: Mapping[str, object], path: str, own: tuple[int, str, Fraction], masks: Sequence[Mask], warnings: list[str]
+) -> Detection:
+    """The detection of an object; `own` is its id, its time key and the key's time."""
+    number, key, time = own
     label = checks.as_label(members.get("label"), f"{path}.label")
     box = checks.as_box(members.get("bbox"), f"{path}.bbox")
     polygon = members.get("polygon")
-    own = None if polygon is None else _area(polygon, f"{path}.polygon", warnings)
-    return {
-        "label": label,
-        "score": checks.as_score(members.get("score"), f"{path}.score"),
-        "box": box,
-        "polygon": own or matching_mask(label, box, masks),
-        "track_id": checks.as_track_id(members.get("track_id"), f"{path}.track_id"),
-    }
+    outline = None if polygon is None else _area(polygon, f"{path}.polygon", warnings)
+    return Detection(
+        id=number,
+        key=key,
+        time=time,
+        label=label,
+        score=checks.as_score(members.get("score"), f"{path}.score"),
+        box=box,
+        polygon=outline or matching_mask(label, box, masks),
+        track_id=checks.as_track_id(members.get("track_id"), f"{path}.track_id"),
+    )
 
 
-def _area(value: Any, path: str, warnings: list[str]) -> Polygon | None:
+def _area(value: object, path: str, warnings: list[str]) -> Polygon | None:
     """A polygon that encloses something; contours of one or two corners occur and mean nothing."""
     polygon = checks.as_polygon(value, path)
     if len(polygon) < 3:

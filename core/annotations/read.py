@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from core.annotations.checks import shown
 from core.errors import BadInput
@@ -16,7 +15,7 @@ MAX_BYTES = 64 * 1024 * 1024
 20 MB. 64 MiB of the most wasteful JSON need 1.9 GiB once parsed (measured), half of what a stage may use."""
 
 
-def read_json(path: Path) -> Any:
+def read_json(path: Path) -> object:
     """The JSON value in an annotation file. The size is looked at before anything is read.
 
     Raises:
@@ -32,7 +31,7 @@ def read_json(path: Path) -> Any:
     return parse_json(path.read_bytes())
 
 
-def parse_json(data: bytes) -> Any:
+def parse_json(data: bytes) -> object:
     """The JSON value of UTF-8 text; numbers that are not finite are left for the checks, which know their place.
 
     Raises:
@@ -66,7 +65,7 @@ def parse_json(data: bytes) -> Any:
         ) from None
 
 
-def _object(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+def _object(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     """A JSON object; a key that occurs twice is refused, because one of the two would be lost silently."""
     values = dict(pairs)
     if len(values) != len(pairs):

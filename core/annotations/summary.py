@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from core.annotations.advice import advice
 from core.annotations.clocks import MEANINGS
@@ -34,7 +33,7 @@ class AnnotationSummary:
     convention: str
     n_keys_outside_video: int | None
     """None when no video was given."""
-    time_convention: dict[str, Any] | None
+    time_convention: dict[str, object] | None
     """How the time keys were read, as in `quality.json`; None when no video was given."""
     n_annotated_frames: int | None
     """Source frames with a detection; None when no video was given."""
@@ -42,7 +41,7 @@ class AnnotationSummary:
     warnings: tuple[str, ...]
     """The first few."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """JSON form."""
         return {**self.__dict__, "warnings": list(self.warnings)}
 

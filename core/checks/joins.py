@@ -7,12 +7,15 @@ not move in the picture and so fix nothing, fit as well as one model.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.flags import Flag, Severity
+
+if TYPE_CHECKING:
+    import pycolmap
 
 I64 = NDArray[np.int64]
 F64 = NDArray[np.float64]
@@ -35,7 +38,7 @@ class Tracks:
     """(n,) diagonal of the box around its keypoints."""
 
 
-def tracks_of(model: Any) -> Tracks:
+def tracks_of(model: pycolmap.Reconstruction) -> Tracks:
     """Of all points of a model (`pycolmap.Reconstruction`, image_id = index + 1)."""
     point, frame, xy = [], [], []
     for image_id in model.reg_image_ids():

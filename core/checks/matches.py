@@ -7,15 +7,18 @@ gives pairs whose matches the model's motion does not explain, although each pai
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.flags import Flag, Severity
 from core.geometry.pose import pose_of
+from core.viewgraph import PairTable
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -41,16 +44,16 @@ class Agreement:
     """(m,) of their verified matches, those that the model's motion explains."""
 
 
-def match_agreement(model: Any, graph: Mapping[str, NDArray[Any]]) -> Agreement:
+def match_agreement(model: pycolmap.Reconstruction, graph: PairTable) -> Agreement:
     """Compare the verified pairs of ``graph.npz`` with a model (`pycolmap.Reconstruction`, image_id = index + 1)."""
     views = {image_id - 1: _View(model, image_id) for image_id in model.reg_image_ids()}
     pairs, shares = [], []
-    offsets = graph["offsets"]
-    for row, (first, second) in enumerate(graph["pairs"].tolist()):
+    offsets = graph.offsets
+    for row, (first, second) in enumerate(graph.pairs.tolist()):
         start, end = int(offsets[row]), int(offsets[row + 1])
         if end - start < MIN_INLIERS or first not in views or second not in views:
             continue
-        matches = graph["inliers"][start:end].astype(np.int64)
+        matches = graph.inliers[start:end].astype(np.int64)
         angles = _epipolar_angles(views[first], views[second], matches)
         pairs.append((first, second))
         shares.append(float((angles * views[first].focal <= TOLERANCE_PX).mean()))
@@ -82,7 +85,7 @@ def check_matches(agreement: Agreement) -> list[Flag]:
 class _View:
     """Pose and keypoint rays of one registered image."""
 
-    def __init__(self, model: Any, image_id: int) -> None:
+    def __init__(self, model: pycolmap.Reconstruction, image_id: int) -> None:
         image = model.image(image_id)
         camera = model.camera(image.camera_id)
         keypoints = np.array([point.xy for point in image.points2D]).reshape(-1, 2)

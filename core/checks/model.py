@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,18 +17,25 @@ from core.checks.stats import ModelStats, model_stats
 from core.flags import Flag, Severity, worst
 from core.viewgraph import PairTable
 
+if TYPE_CHECKING:
+    import pycolmap
+
 SAMPLED_POINTS = 2000
 
 
 def check_model(
-    model: Any, stats: ModelStats, graph: Mapping[str, NDArray[Any]], n_frames: int, n_search: int | None = None
+    model: pycolmap.Reconstruction,
+    stats: ModelStats,
+    graph: PairTable,
+    n_frames: int,
+    n_search: int | None = None,
 ) -> list[Flag]:
     """Flags of a model (`pycolmap.Reconstruction`, image_id = index + 1).
 
     Args:
         model: to judge.
         stats: of the same model.
-        graph: arrays of ``graph.npz``.
+        graph: pairs of ``graph.npz``.
         n_frames: frames that took part.
         n_search: frames from this index on are out of order; None = all are in order.
     """
@@ -40,7 +46,7 @@ def check_model(
     camera = next(iter(model.cameras.values()))
     flags = [
         check_rotations(found),
-        check_planar(graph, frames),
+        check_planar(graph.pairs, graph.n_inliers, graph.config, frames),
         check_joins(tracks_of(model), frames, int(frames.max(initial=-1)) + 1 if n_search is None else n_search),
         *check_matches(match_agreement(model, graph)),
         model_parallax(point_angles_deg(model)),
@@ -52,12 +58,12 @@ def check_model(
     return [flag for flag in flags if flag is not None]
 
 
-def is_wrong(model: Any, table: PairTable, n_frames: int, n_search: int | None = None) -> bool:
+def is_wrong(model: pycolmap.Reconstruction, table: PairTable, n_frames: int, n_search: int | None = None) -> bool:
     """Whether `check_model` vetoes a model: the one rule by which a model is not gone on with."""
-    return worst(check_model(model, model_stats(model), vars(table), n_frames, n_search)) == Severity.ERROR
+    return worst(check_model(model, model_stats(model), table, n_frames, n_search)) == Severity.ERROR
 
 
-def point_angles_deg(model: Any, count: int = SAMPLED_POINTS) -> NDArray[np.float64]:
+def point_angles_deg(model: pycolmap.Reconstruction, count: int = SAMPLED_POINTS) -> NDArray[np.float64]:
     """(n,) largest angle between the views of a point, for at most `count` points spread over the ids."""
     ids = np.array(sorted(model.point3D_ids()))
     if len(ids) > count:

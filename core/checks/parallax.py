@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ MAX_PLANAR_SHARE = 0.95
 MIN_PLANAR_PAIRS = 10
 
 
-def cases_parallax(rows: Sequence[Mapping[str, Any]]) -> Flag | None:
+def cases_parallax(rows: Sequence[Mapping[str, object]]) -> Flag | None:
     """Whether the search found no model because the views do not differ in place.
 
     A pair of neighbouring frames cannot tell: keypoint noise of a turning camera triangulates under up to 0.3
@@ -51,20 +50,24 @@ def model_parallax(angles_deg: NDArray[np.float64]) -> Flag | None:
     return Flag("no_parallax", Severity.ERROR, median, MIN_MODEL_ANGLE_DEG, f"{len(angles_deg)} points")
 
 
-def check_planar(graph: Mapping[str, NDArray[Any]], frames: NDArray[np.int64]) -> Flag | None:
+def check_planar(
+    pairs: NDArray[np.int32], n_inliers: NDArray[np.int64], config: NDArray[np.uint8], frames: NDArray[np.int64]
+) -> Flag | None:
     """`planar_start` when a plane or a turn explains nearly all pairs of a model's frames as well as a motion does.
 
     The motion between two such images has two solutions and the lens hardly any hold; where the mapper starts, it
     cannot choose well.
 
     Args:
-        graph: arrays of ``graph.npz``.
+        pairs: (m, 2) frame indices of matched pairs.
+        n_inliers: (m,) of each pair; pairs without any have no say.
+        config: (m,) COLMAP's two-view configuration of each pair.
         frames: (n,) indices of the registered frames.
     """
-    inside = np.isin(graph["pairs"], frames).all(axis=1) & (np.diff(graph["offsets"]) > 0)
+    inside = np.isin(pairs, frames).all(axis=1) & (n_inliers > 0)
     if inside.sum() < MIN_PLANAR_PAIRS:
         return None
-    share = float(np.isin(graph["config"][inside], DEGENERATE_CONFIGS).mean())
+    share = float(np.isin(config[inside], DEGENERATE_CONFIGS).mean())
     if share <= MAX_PLANAR_SHARE:
         return None
     return Flag("planar_start", Severity.WARNING, share, MAX_PLANAR_SHARE, f"{int(inside.sum())} pairs")

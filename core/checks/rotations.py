@@ -8,15 +8,14 @@ disagreement is looked at cut by cut along the sequence and not only over all pa
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from core.flags import Flag, Severity
+from core.viewgraph import PairTable
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -40,14 +39,14 @@ class PairRotations:
     """(m, 3, 3) cam2_from_cam1."""
 
 
-def measured_rotations(graph: Mapping[str, NDArray[Any]], min_inliers: int = MIN_INLIERS) -> PairRotations:
+def measured_rotations(graph: PairTable, min_inliers: int = MIN_INLIERS) -> PairRotations:
     """The well-conditioned pairs of ``graph.npz``: calibrated, with at least `min_inliers` inliers."""
-    quaternions = graph["rotation_xyzw"]
-    usable = (graph["config"] == CALIBRATED) & (np.diff(graph["offsets"]) >= min_inliers)
+    quaternions = graph.rotation_xyzw
+    usable = (graph.config == CALIBRATED) & (np.diff(graph.offsets) >= min_inliers)
     usable &= np.abs(np.linalg.norm(quaternions, axis=1) - 1.0) < 1e-3
     chosen = quaternions[usable]
     rotations = Rotation.from_quat(chosen).as_matrix() if len(chosen) else np.zeros((0, 3, 3))
-    return PairRotations(graph["pairs"][usable].astype(np.int64), rotations)
+    return PairRotations(graph.pairs[usable].astype(np.int64), rotations)
 
 
 @dataclass(frozen=True)

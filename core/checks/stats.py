@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    import pycolmap
 
 FAR_PX = 1e6
 """A point with a larger mean reprojection error lies at or behind infinity and says nothing about the model."""
@@ -27,7 +30,7 @@ class ModelStats:
         return self.registered_images, self.points3D
 
 
-def model_stats(model: Any) -> ModelStats:
+def model_stats(model: pycolmap.Reconstruction) -> ModelStats:
     """Registered images, points and errors of a model; its points' errors are computed anew."""
     model.update_point_3d_errors()
     points = model.points3D.values()

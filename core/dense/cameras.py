@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import StageFailed
 from core.settings.groups import DenseSettings
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 
@@ -42,7 +45,7 @@ class Pinhole:
         return Pinhole(self.focal_px / 2, self.cx / 2, self.cy / 2, self.width // 2, self.height // 2)
 
 
-def choose_pinhole(camera: Any, settings: DenseSettings) -> Pinhole:
+def choose_pinhole(camera: pycolmap.Camera, settings: DenseSettings) -> Pinhole:
     """The pinhole that shows what the lens shows, down to a bound on peripheral stretch.
 
     Rule: the focal length is the lens's own at its centre, so the centre keeps its resolution. The image covers the
@@ -70,7 +73,7 @@ def choose_pinhole(camera: Any, settings: DenseSettings) -> Pinhole:
     return Pinhole(focal, float(-low[0] * focal), float(-low[1] * focal), width, height)
 
 
-def _border_rays(camera: Any) -> F64:
+def _border_rays(camera: pycolmap.Camera) -> F64:
     """(n, 2) tangents x/z, y/z of rays through the image border; rays that miss the front are left out."""
     w, h = float(camera.width), float(camera.height)
     s = np.linspace(0.0, 1.0, 65)

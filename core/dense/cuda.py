@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts when a PNG is written)
 import pycolmap
@@ -36,7 +36,7 @@ def resolve_method(settings: DenseSettings, has_cuda: bool | None = None) -> Met
     return "cuda" if available and settings.method != "cpu" else "cpu"
 
 
-def patch_match_options(settings: DenseSettings, geometric: bool) -> Any:
+def patch_match_options(settings: DenseSettings, geometric: bool) -> pycolmap.PatchMatchOptions:
     """pycolmap.PatchMatchOptions of our settings; the window and the sampling stay COLMAP's."""
     options = pycolmap.PatchMatchOptions()
     options.geom_consistency = geometric

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
@@ -33,7 +32,7 @@ class UndistortMap:
         return np.asarray(out, dtype=np.uint8)
 
 
-def undistort_map(camera: Any, pinhole: Pinhole) -> UndistortMap:
+def undistort_map(camera: pycolmap.Camera, pinhole: Pinhole) -> UndistortMap:
     """The map from `pinhole` to the distorted image of `camera` (pycolmap.Camera)."""
     v, u = np.mgrid[0 : pinhole.height, 0 : pinhole.width]
     rays = np.empty((u.size, 3))
@@ -54,7 +53,9 @@ def undistort_map(camera: Any, pinhole: Pinhole) -> UndistortMap:
     )
 
 
-def pinhole_model(model: Any, pinhole: Pinhole, image_ids: Sequence[int]) -> Any:
+def pinhole_model(
+    model: pycolmap.Reconstruction, pinhole: Pinhole, image_ids: Sequence[int]
+) -> pycolmap.Reconstruction:
     """A reconstruction of the given images with the PINHOLE camera and the tracks that fall into it.
 
     Image ids, names and poses are those of `model`. Observations outside the pinhole's image are dropped,
@@ -84,7 +85,9 @@ def pinhole_model(model: Any, pinhole: Pinhole, image_ids: Sequence[int]) -> Any
     return out
 
 
-def _undistorted_observations(image: Any, camera: Any, pinhole: Pinhole) -> tuple[list[int], NDArray[np.float64]]:
+def _undistorted_observations(
+    image: pycolmap.Image, camera: pycolmap.Camera, pinhole: Pinhole
+) -> tuple[list[int], NDArray[np.float64]]:
     """Ids of the observed points and their (n, 2) pixels in the pinhole, one observation a point."""
     seen: dict[int, NDArray[np.float64]] = {}
     for observation in image.get_observation_points2D():

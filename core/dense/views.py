@@ -7,13 +7,16 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.pose import Pose, pose_of
 from core.settings.groups import DenseSettings
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -50,7 +53,7 @@ class SparseViews:
     """Per image, sorted rows of `points` that it observes."""
 
 
-def sparse_views(model: Any) -> SparseViews:
+def sparse_views(model: pycolmap.Reconstruction) -> SparseViews:
     """Read poses and tracks of all posed images of a pycolmap.Reconstruction."""
     point_ids = sorted(model.points3D)
     row = {point_id: i for i, point_id in enumerate(point_ids)}

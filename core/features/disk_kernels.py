@@ -8,22 +8,16 @@ mean `x * scale + shift` followed by PReLU.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
-
 import numpy as np
 from numpy.typing import NDArray
 
-from core.jit import compiled
+from core.jit import Function, compiled
 
 Array = NDArray[np.float32]
 
-Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
-
-def _jit(function: Kernel) -> Kernel:
-    made: Kernel = compiled(function, fastmath={"contract", "reassoc", "nsz", "arcp"}, error_model="numpy")
-    return made
+def _jit(function: Function) -> Function:
+    return compiled(function, fastmath={"contract", "reassoc", "nsz", "arcp"}, error_model="numpy")
 
 
 @_jit

@@ -39,7 +39,9 @@ def make_extractor(settings: FeatureSettings, threads: int = 1) -> Extractor:
     def extract(image: NDArray[np.uint8]) -> FrameFeatures:
         height, width = image.shape[:2]
         size = working_size(width, height, settings)
-        small = image if size == (width, height) else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+        small = image
+        if size != (width, height):
+            small = np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
         found = detect(small)
         # Positions already count from the corner of the image, so one factor per axis takes them back exactly.
         factors = np.array([width / size[0], height / size[1]])
@@ -64,7 +66,7 @@ def _disk_detector(settings: FeatureSettings, network: Disk) -> Extractor:
 
 def _sift_detector(settings: FeatureSettings) -> Extractor:
     def detect(image: NDArray[np.uint8]) -> FrameFeatures:
-        return sift(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), settings.max_keypoints)
+        return sift(np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8), settings.max_keypoints)
 
     return detect
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import StageFailed
+
+Descriptors = NDArray[np.float16] | NDArray[np.float32] | NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,7 @@ class FrameFeatures:
     """(n, 2) x, y in crop pixels; pixel centres at (0.5, 0.5)."""
     scores: NDArray[np.float32]
     """(n,) detector's score, falling."""
-    descriptors: NDArray[Any]
+    descriptors: Descriptors
     """(n, d): float16 of unit length (DISK), uint8 (SIFT)."""
 
     def __len__(self) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 Row = Mapping[str, Any]
+"""A row of a table or an entry of defects.json (docs/outputs.md), as it was read from JSON."""
 
 _UNITS = {"model": "model units"}
 """Units of an extent as people read them, where that differs."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.gallery.defects import Row
 from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
 
@@ -43,7 +43,7 @@ class Evidence:
         return evidence_name(self.defect)
 
 
-def evidence_of(records: Sequence[Mapping[str, Any]], rows: Sequence[DetectionRow]) -> list[Evidence]:
+def evidence_of(records: Sequence[Row], rows: Sequence[DetectionRow]) -> list[Evidence]:
     """Of every defect with a view in which it was detected, in their order."""
     found = []
     for record in records:
@@ -58,7 +58,7 @@ def evidence_of(records: Sequence[Mapping[str, Any]], rows: Sequence[DetectionRo
     return [one for one in found if one.boxes]
 
 
-def _caption(record: Mapping[str, Any]) -> str:
+def _caption(record: Row) -> str:
     seen = record["persistence"]
     confidence = record.get("confidence") or {}
     sure = f", confidence {confidence['value']:.2f}" if confidence else ""
@@ -77,7 +77,8 @@ def draw_evidence(rgb: U8, one: Evidence) -> U8:
     frame = _scaled(rgb, HEIGHT_PX / rgb.shape[0])
     _mark(frame, one, (0.0, 0.0), (frame.shape[1], frame.shape[0]), 1)
     x, y, side = _window(rgb.shape[1], rgb.shape[0], one)
-    close = cv2.resize(rgb[y : y + side, x : x + side], (HEIGHT_PX, HEIGHT_PX), interpolation=cv2.INTER_CUBIC)
+    cut = rgb[y : y + side, x : x + side]
+    close = np.asarray(cv2.resize(cut, (HEIGHT_PX, HEIGHT_PX), interpolation=cv2.INTER_CUBIC), np.uint8)
     zoom = HEIGHT_PX / side
     _mark(close, one, (x * zoom, y * zoom), (rgb.shape[1] * zoom, rgb.shape[0] * zoom), 2)
     both = np.hstack([frame, np.full((HEIGHT_PX, 4, 3), 255, np.uint8), close])
@@ -88,8 +89,7 @@ def draw_evidence(rgb: U8, one: Evidence) -> U8:
 
 def _scaled(rgb: U8, factor: float) -> U8:
     size = (max(1, round(rgb.shape[1] * factor)), HEIGHT_PX)
-    scaled: U8 = cv2.resize(rgb, size, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC)
-    return scaled
+    return np.asarray(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC), np.uint8)
 
 
 def _window(width: int, height: int, one: Evidence) -> tuple[int, int, int]:

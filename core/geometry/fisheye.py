@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,7 +39,7 @@ def viewing_angle(radius: float, distortion: F64) -> float | None:
 
 
 @compiled
-def fisheye_radius_and_slope(theta: Any, k1: Any, k2: Any, k3: Any, k4: Any) -> tuple[float, float]:
+def fisheye_radius_and_slope(theta: float, k1: float, k2: float, k3: float, k4: float) -> tuple[float, float]:
     """`fisheye_radius` of one angle in a compiled loop, and its derivative by the angle.
 
     It is written in Horner's form, which rounds differently in the last bits than the powers above; both forms stay,

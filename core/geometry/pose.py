@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 
@@ -35,7 +38,7 @@ class Pose:
         return Pose(R, self.t - R @ reference.t)
 
 
-def pose_of(image: Any) -> Pose:
+def pose_of(image: pycolmap.Image) -> Pose:
     """The pose of a registered image (`pycolmap.Image`)."""
     matrix = np.asarray(image.cam_from_world().matrix())
     return Pose(matrix[:, :3], matrix[:, 3])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
@@ -13,6 +13,11 @@ from core.matched_pair import LIGHTGLUE, MUTUAL_NEAREST, MatchedPair
 from core.matching.mutual_nearest import Matches, mutual_nearest, unit_descriptors
 from core.settings.groups import MatchSettings
 from core.verification import STRONG_INLIERS, Verifier
+
+if TYPE_CHECKING:
+    from core.matching.lightglue import LightGlueMatcher
+
+Made = TypeVar("Made")
 
 GIVE_UP_AFTER = 2
 """Pairs in vain after which LightGlue is not tried on a frame that nothing has matched yet."""
@@ -51,7 +56,7 @@ class PairMatcher:
         self._use_lightglue = matching.method == "lightglue"
         self._may_rematch = matching.method == "auto" and features == "disk"
         self._verifier = verifier
-        self._network: Any = None
+        self._network: LightGlueMatcher | None = None
         self._units = _LastUsed(lambda features: unit_descriptors(features.descriptors))
 
     def match(self, first: FrameFeatures, second: FrameFeatures, *, rematch: bool = True) -> MatchedPair:
@@ -86,18 +91,17 @@ class PairMatcher:
 
         if self._network is None:
             self._network = LightGlueMatcher()
-        matches: Matches = self._network.match(first, second, self._verifier.size, strongest)
-        return matches
+        return self._network.match(first, second, self._verifier.size, strongest)
 
 
-class _LastUsed:
+class _LastUsed(Generic[Made]):
     """Remembers the results for the features used last, which neighbouring pairs share."""
 
-    def __init__(self, make: Callable[[FrameFeatures], Any], size: int = 12) -> None:
+    def __init__(self, make: Callable[[FrameFeatures], Made], size: int = 12) -> None:
         self._make, self._size = make, size
-        self._kept: dict[int, tuple[FrameFeatures, Any]] = {}
+        self._kept: dict[int, tuple[FrameFeatures, Made]] = {}
 
-    def __call__(self, features: FrameFeatures) -> Any:
+    def __call__(self, features: FrameFeatures) -> Made:
         found = self._kept.pop(id(features), None) or (features, self._make(features))
         self._kept[id(features)] = found
         while len(self._kept) > self._size:

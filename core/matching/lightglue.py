@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import Any
 
 import numpy as np
 import torch
@@ -24,7 +23,7 @@ class LightGlueMatcher:
 
     def __init__(self) -> None:
         """Load the network (about 12 million weights)."""
-        self._network: Any = LightGlue(features=None, input_dim=128, descriptor_dim=256).eval()
+        self._network: torch.nn.Module = LightGlue(features=None, input_dim=128, descriptor_dim=256).eval()
         state = {rename(key): value for key, value in load_weights(LIGHTGLUE_WEIGHTS).items()}
         report = self._network.load_state_dict(state, strict=False)
         # The thresholds are a table the network fills itself; `r` was used in training alone.

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import torch
 from numpy.typing import NDArray
+
+from core.features.io import Descriptors
 
 Matches = NDArray[np.uint32]
 
 _BLOCK = 512
 
 
-def unit_descriptors(descriptors: NDArray[Any]) -> torch.Tensor:
+def unit_descriptors(descriptors: Descriptors) -> torch.Tensor:
     """Descriptors of any stored type as float32 rows of unit length."""
     return torch.nn.functional.normalize(torch.from_numpy(descriptors.astype(np.float32)), dim=-1)
 

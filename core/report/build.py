@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from core.flags import Verdict
 from core.json_files import write_json
 from core.mapping.rows import DETECTION_COLUMNS
 from core.report.quality import build_quality, collect_flags, verdict_of
-from core.report.record import RunRecord
+from core.report.record import Document, Item, Row, RunRecord
 from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
 from core.report.summary import build_summary
 from core.report.tables import write_csv
 from core.timeline.rows import TIMELINE_COLUMNS
-
-Row = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -25,13 +22,13 @@ class Report:
     """Published tables and objects of a run, as plain JSON values."""
 
     verdict: Verdict
-    summary: Mapping[str, Any]
-    quality: Mapping[str, Any]
+    summary: Document
+    quality: Document
     frames: Sequence[Row]
     cases: Sequence[Row]
     detections: Sequence[Row]
-    timeline: Sequence[Row]
-    defects: Sequence[Row]
+    timeline: Sequence[Item]
+    defects: Sequence[Item]
 
 
 def build_report(record: RunRecord) -> Report:

@@ -14,7 +14,6 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 _RUN = re.compile(r"'*[=+\-@\t\r]")
 """How a text begins that a spreadsheet would run, however often it was escaped."""
@@ -31,7 +30,7 @@ def unescaped(cell: str) -> str:
     return cell[1:] if _ESCAPED.match(cell) else cell
 
 
-def csv_line(values: Sequence[Any]) -> str:
+def csv_line(values: Sequence[object]) -> str:
     """One record with its CRLF: `.` decimals, 1 and 0 for true and false, empty for unknown.
 
     Raises:
@@ -49,7 +48,7 @@ def read_csv(path: Path) -> Iterator[dict[str, str]]:
             yield {name: unescaped(cell) for name, cell in row.items()}
 
 
-def _cell(value: Any) -> str:
+def _cell(value: object) -> str:
     if value is None:
         return ""
     if isinstance(value, str):

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from core.mapping.rows import REASONS, Outcome
-
-Row = Mapping[str, Any]
+from core.report.record import Cell, Row
 
 WITHOUT_VIEW = ("no_registered_view", "frame_not_registered")
 _BEFORE_SURFACE = ("no_frame", *WITHOUT_VIEW, "outside_roi", "no_support", "off_surface")
@@ -16,7 +14,7 @@ FEW_SUPPORT_POINTS = 20
 """Support of this many points or fewer is called weak (thesis 3.4.5)."""
 
 
-def funnel(rows: Sequence[Row], n_defects: int, method: str) -> dict[str, Any]:
+def funnel(rows: Sequence[Row], n_defects: int, method: str) -> dict[str, int | None]:
     """Detections left after each step. `surface_hit` and `verified` are null where the rules have no such step."""
     reasons = Counter(row["reason"] for row in rows)
     frame_found = len(rows) - reasons["no_frame"]
@@ -37,7 +35,7 @@ def funnel(rows: Sequence[Row], n_defects: int, method: str) -> dict[str, Any]:
     }
 
 
-def losses(rows: Sequence[Row]) -> list[dict[str, Any]]:
+def losses(rows: Sequence[Row]) -> list[dict[str, Cell]]:
     """Detections without a mapped place by reason, most frequent first, with the share of all detections."""
     counts = Counter(str(row["reason"]) for row in rows if row["reason"])
     return [
@@ -46,9 +44,9 @@ def losses(rows: Sequence[Row]) -> list[dict[str, Any]]:
     ]
 
 
-def support_counts(rows: Sequence[Row], unique_points: int | None) -> dict[str, Any]:
+def support_counts(rows: Sequence[Row], unique_points: int | None) -> dict[str, float | None]:
     """Sparse support points per mapped detection: minimum, mean, maximum; null without a mapped detection."""
-    counts = [int(row["support_points"]) for row in rows if row["outcome"] == Outcome.MAPPED]
+    counts = [int(row["support_points"] or 0) for row in rows if row["outcome"] == Outcome.MAPPED]
     return {
         "min": min(counts, default=None),
         "mean": round(sum(counts) / len(counts), 2) if counts else None,

@@ -22,7 +22,7 @@ def served_pieces(keys: Collection[str]) -> list[int]:
 def load_tables(folders: Mapping[str, Path]) -> RunTables:
     """Tables of a run from the result folders of its finished tasks, by task key; missing ones stay empty."""
 
-    def table(key: str, name: str, default: Any = ()) -> Any:
+    def table(key: str, name: str, default: object = ()) -> Any:  # see `core.json_files.read_json`
         path = folders[key] / name if key in folders else None
         return read_json(path) if path is not None and path.is_file() else default
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import TypeVar
 
 from core.mapping.rows import Outcome
+from core.report.record import Item
 
-Row = Mapping[str, Any]
+One = TypeVar("One")
+
 
 _RANK: dict[str, int] = {Outcome.MAPPED: 0, Outcome.APPROXIMATE: 1}
 """Outcomes in the order in which a model's row counts; all others are behind."""
 
 
-def join_detections(tables: Sequence[Sequence[Row]]) -> list[Row]:
+def join_detections(tables: Sequence[Sequence[Item]]) -> list[Item]:
     """One row per detection, in the order of the first table: the best placed one, of equals the first model's.
 
     Args:
@@ -29,6 +31,6 @@ def join_detections(tables: Sequence[Sequence[Row]]) -> list[Row]:
     return joined
 
 
-def join_lists(tables: Sequence[Sequence[Row]]) -> list[Row]:
+def join_lists(tables: Sequence[Sequence[One]]) -> list[One]:
     """Rows of all models; their ids are told apart where they are made."""
     return [row for table in tables for row in table]

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import replace
 
 from core.checks.parallax import cases_parallax
-from core.flags import Flag, Severity, Verdict, error_codes
+from core.flags import Flag, FlagFields, Severity, Verdict, error_codes
 from core.report.funnel import funnel, losses, support_counts
 from core.report.missing import missing_parts
-from core.report.record import RunRecord, TaskRecord
+from core.report.record import Document, Item, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
 from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
 from core.task_key import key_of, part_of, piece_of
-
-Row = Mapping[str, Any]
 
 _SEVERITY_RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
@@ -33,17 +31,18 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     for task in record.tasks:
         piece = piece_of(task.key)
         for row in [*task.facts.get("flags", ()), *_checks_that_count(record, task)]:
-            flags.append(Flag.from_dict({**row, "where": f"model {piece}, {row['where']}"} if piece else row))
+            flag = Flag.from_dict(row)
+            flags.append(replace(flag, where=f"model {piece}, {flag.where}") if piece else flag)
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
     return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
 
 
-def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[Row]:
+def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFields]:
     """Of the cases, the checks of the chosen one speak for the run, and only where no final model was made of it."""
     is_case = task.stage in ("coarse", "refine")
     if is_case and (record.facts("extend") or part_of(task.key) != selected_case(record)):
         return ()
-    checks: Sequence[Row] = task.facts.get("checks", ())
+    checks: Sequence[FlagFields] = task.facts.get("checks", ())
     return checks
 
 
@@ -66,7 +65,7 @@ def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
 
 def build_quality(
     record: RunRecord, verdict: Verdict, flags: Sequence[Flag], cases: Sequence[Row], detections: Sequence[Row]
-) -> dict[str, Any]:
+) -> Document:
     """The object of quality.json. Unknown = null; nothing is guessed."""
     defects = [] if verdict == Verdict.REFUSED else record.tables.defects
     steps = funnel(detections, len(defects), record.settings.mapping.method)
@@ -120,7 +119,7 @@ def _notes(record: RunRecord) -> list[str]:
     return notes
 
 
-def _registration(record: RunRecord) -> dict[str, Any]:
+def _registration(record: RunRecord) -> dict[str, object]:
     """Registered shares, of the frames offered and of all frames of the video."""
     offered, registered = len(record.tables.frames), len(record.tables.registered)
     frames, registered_set = record.tables.frames, set(record.tables.registered)
@@ -139,7 +138,7 @@ def _registration(record: RunRecord) -> dict[str, Any]:
     }
 
 
-def _models(record: RunRecord) -> list[dict[str, Any]]:
+def _models(record: RunRecord) -> list[dict[str, object]]:
     """The served models; the first is the run's own."""
     rows = []
     for number in (0, *sorted(record.tables.registered_further)):
@@ -155,7 +154,7 @@ def _share(part: int, whole: int | None) -> float | None:
     return round(part / whole, 4) if whole else None
 
 
-def _reprojection(record: RunRecord) -> dict[str, Any]:
+def _reprojection(record: RunRecord) -> dict[str, object]:
     facts = record.facts("extend")
     return {
         "mean_px": facts.get("mean_reprojection_error_px"),
@@ -163,13 +162,13 @@ def _reprojection(record: RunRecord) -> dict[str, Any]:
     }
 
 
-def _surface(record: RunRecord) -> dict[str, Any]:
+def _surface(record: RunRecord) -> dict[str, object]:
     names = ("n_vertices", "n_faces", "diagonal_su", "point_spacing_su", "supported_share")
     facts = record.facts("mesh")
     return {name: facts.get(name) for name in names}
 
 
-def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
+def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, object]]:
     """The cases that were not selected, best first, each with why it lost.
 
     `verified_detections` is null for coarse cases, which lost before detections were asked for.
@@ -193,13 +192,13 @@ def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
         {
             **{name: row[name] for name in names},
             "verified_detections": verified.get(row["name"]),
-            "why": _why_lost(row, checks[row["name"]], verified.get(row["name"]), verified.get(winner)),
+            "why": _why_lost(row, checks[str(row["name"])], verified.get(row["name"]), verified.get(winner)),
         }
         for row in order
     ]
 
 
-def _why_lost(row: Row, checks: Sequence[Row], verified: int | None, of_winner: int | None) -> str:
+def _why_lost(row: Row, checks: Sequence[Item], verified: int | None, of_winner: int | None) -> str:
     if row["status"] != "succeeded":
         return str(row["reason"] or row["status"])
     if row["vetoed"]:

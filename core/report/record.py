@@ -11,6 +11,15 @@ from core.stage import Facts
 from core.states import RunState, TaskState
 from core.task_key import stage_of
 
+Cell = str | int | float | None
+"""A value of a published table."""
+Row = Mapping[str, Cell]
+"""A row of a published table, by column."""
+Item = Mapping[str, Any]
+"""An object of a JSON file that a stage wrote; docs/stage-results.md says which members it has."""
+Document = dict[str, Any]
+"""The object of summary.json or quality.json, nested as docs/outputs.md says."""
+
 
 @dataclass(frozen=True)
 class TaskRecord:
@@ -38,18 +47,18 @@ class TaskRecord:
 class RunTables:
     """Tables that stages left in their result folders; empty where a stage did not come to its end."""
 
-    detections: Sequence[Mapping[str, Any]] = ()
+    detections: Sequence[Item] = ()
     """`annotations`: detections as read."""
-    frames: Sequence[Mapping[str, Any]] = ()
+    frames: Sequence[Item] = ()
     """`frames`: frame table of the search."""
     registered: Sequence[int] = ()
     """`extend`: indices of the registered frames."""
     registered_further: Mapping[int, Sequence[int]] = field(default_factory=dict)
     """The same of further models, by number."""
-    mapped_rows: Sequence[Mapping[str, Any]] | None = None
+    mapped_rows: Sequence[Item] | None = None
     """`timeline` (else `map_defects`): rows of the detections; None = mapping was not reached."""
-    timeline: Sequence[Mapping[str, Any]] = ()
-    defects: Sequence[Mapping[str, Any]] = ()
+    timeline: Sequence[Item] = ()
+    defects: Sequence[Item] = ()
 
 
 @dataclass(frozen=True)

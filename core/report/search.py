@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-Row = Mapping[str, Any]
+from core.report.record import Cell, Row
 
 WEAK_IMAGES = 80
 WEAK_POINTS = 25_000
@@ -24,7 +23,7 @@ def best_case(cases: Sequence[Row], kind: str) -> Row | None:
     return max(candidates, key=score, default=None)
 
 
-def spread(cases: Sequence[Row], kind: str) -> dict[str, Any]:
+def spread(cases: Sequence[Row], kind: str) -> dict[str, int | None]:
     """Number of cases of a kind and the range of their models' sizes; null where no case has a model."""
     found = [row for row in cases if row["kind"] == kind and row["status"] == "succeeded"]
     images, points = [score(row)[0] for row in found], [score(row)[1] for row in found]
@@ -38,7 +37,7 @@ def spread(cases: Sequence[Row], kind: str) -> dict[str, Any]:
     }
 
 
-def refinement_gain(cases: Sequence[Row]) -> dict[str, Any] | None:
+def refinement_gain(cases: Sequence[Row]) -> dict[str, Cell] | None:
     """Best refined against best coarse case, absolute and in percent; None unless both exist."""
     coarse, refined = best_case(cases, "coarse"), best_case(cases, "refine")
     if coarse is None or refined is None:
@@ -58,7 +57,7 @@ def _percent(gain: int, base: int) -> float | None:
     return round(100.0 * gain / base, 1) if base else None
 
 
-def weak_cases(cases: Sequence[Row]) -> dict[str, Any]:
+def weak_cases(cases: Sequence[Row]) -> dict[str, object]:
     """Cases that would not carry an inspection, each with why; and the thesis's two counts."""
     weak = [{"name": row["name"], "why": why, **_size(row)} for row in cases if (why := _weakness(row))]
     images = sum(score(row)[0] < WEAK_IMAGES for row in cases)
@@ -66,7 +65,7 @@ def weak_cases(cases: Sequence[Row]) -> dict[str, Any]:
     return {"cases": weak, "fewer_than_80_images": images, "fewer_than_25000_points": points, "of": len(cases)}
 
 
-def _size(row: Row) -> dict[str, Any]:
+def _size(row: Row) -> dict[str, Cell]:
     return {name: row[name] for name in ("status", "registered_images", "frames", "points3D")}
 
 
@@ -74,7 +73,7 @@ def _weakness(row: Row) -> str:
     images, points = score(row)
     if row["status"] != "succeeded":
         return str(row["reason"] or row["status"])
-    if images < WEAK_SHARE * int(row["frames"]):
+    if images < WEAK_SHARE * int(row["frames"] or 0):
         return "fewer than half of its frames registered"
     if images < WEAK_IMAGES and points < WEAK_POINTS:
         return "few images and few points"

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from core.fingerprint import digest_of
 from core.flags import Verdict
 from core.graph import STAGES
 from core.mapping.rows import Outcome
-from core.report.record import RunRecord, TaskRecord
+from core.report.record import Document, Item, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.states import StageState, TaskState
 
-Row = Mapping[str, Any]
-
 
 def build_summary(
-    record: RunRecord, verdict: Verdict, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
-) -> dict[str, Any]:
+    record: RunRecord, verdict: Verdict, detections: Sequence[Row], timeline: Sequence[Item], defects: Sequence[Item]
+) -> Document:
     """The object of summary.json."""
     parameters = record.settings.model_dump(mode="json")
     return {
@@ -43,7 +40,7 @@ def build_summary(
     }
 
 
-def _frame(record: RunRecord) -> dict[str, Any]:
+def _frame(record: RunRecord) -> dict[str, object]:
     """The video: size of its frames, the part of them that was used, px: x0, y0, x1, y1 (half open), and its length."""
     facts, video = record.facts("frames"), record.facts("probe")
     return {
@@ -66,7 +63,7 @@ def run_fingerprint(record: RunRecord) -> str:
     )
 
 
-def _stages(tasks: Sequence[TaskRecord]) -> list[dict[str, Any]]:
+def _stages(tasks: Sequence[TaskRecord]) -> list[dict[str, object]]:
     """One entry per stage of the graph: tasks, summed seconds, largest memory of one task."""
     rows = []
     for name in STAGES:
@@ -99,8 +96,8 @@ def stage_state(states: Sequence[TaskState]) -> StageState:
 
 
 def _headline(
-    record: RunRecord, detections: Sequence[Row], timeline: Sequence[Row], defects: Sequence[Row]
-) -> dict[str, Any]:
+    record: RunRecord, detections: Sequence[Row], timeline: Sequence[Item], defects: Sequence[Item]
+) -> dict[str, object]:
     sparse, fused, mesh = record.facts("extend"), record.facts("fuse"), record.facts("mesh")
     return {
         "frames": len(record.tables.frames),

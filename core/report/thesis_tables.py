@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
-from core.report.record import RunRecord
+from core.report.record import Row, RunRecord
 from core.report.rows import selected_case
 from core.report.search import best_case, refinement_gain, score, spread
 
-Row = Mapping[str, Any]
 
-
-def table_3_2(record: RunRecord) -> list[dict[str, Any]]:
+def table_3_2(record: RunRecord) -> list[dict[str, object]]:
     """Selected reconstruction and dense surface; null = not reached."""
     sparse, fused, mesh = record.facts("extend"), record.facts("fuse"), record.facts("mesh")
     values = (
@@ -30,7 +27,7 @@ def table_3_2(record: RunRecord) -> list[dict[str, Any]]:
     return [{"quantity": name, "value": value} for name, value in values]
 
 
-def table_3_3(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
+def table_3_3(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, object]]:
     """The selected case beside the strongest coarse one, the two weakest and one without a model."""
     chosen = selected_case(record)
     picked: dict[str, str] = {}
@@ -58,12 +55,12 @@ def table_3_3(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
 
 
 def table_3_4(
-    record: RunRecord, rows: Sequence[Row], funnel: Mapping[str, Any], support: Mapping[str, Any]
-) -> list[dict[str, Any]]:
+    record: RunRecord, rows: Sequence[Row], funnel: Mapping[str, int | None], support: Mapping[str, float | None]
+) -> list[dict[str, object]]:
     """The transfer from annotations to geometry, step by step."""
     facts = record.facts("annotations")
-    matched = int(funnel["registered"])
-    with_support = sum(int(row["support_points"]) > 0 for row in rows)
+    matched = int(funnel["registered"] or 0)
+    with_support = sum(int(row["support_points"] or 0) > 0 for row in rows)
     values = (
         ("timestamp_entries", facts.get("n_keys")),
         ("timestamps_with_detections", len({row["key"] for row in rows})),
@@ -78,7 +75,7 @@ def table_3_4(
     return [{"stage": name, "count": value} for name, value in values]
 
 
-def table_3_5(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
+def table_3_5(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, object]]:
     """The design choices and the evidence this run gives for each."""
     settings, facts = record.settings, record.facts("frames")
     coarse, gain = spread(cases, "coarse"), refinement_gain(cases)
@@ -104,4 +101,4 @@ def table_3_5(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, Any]]:
 
 
 def _images_of(cases: Sequence[Row], name: str) -> int | None:
-    return next((int(row["registered_images"]) for row in cases if row["name"] == name), None)
+    return next((int(row["registered_images"] or 0) for row in cases if row["name"] == name), None)

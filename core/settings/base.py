@@ -29,5 +29,9 @@ class Group(BaseModel):
 
 
 def option(default: Any, meaning: str, *, source: str, unit: str = "", **limits: Any) -> Any:
-    """Declare an option with its meaning, unit and the source of its default."""
+    """Declare an option with its meaning, unit and the source of its default.
+
+    The result has no type of its own, as that of pydantic's `Field`: it stands where a value of the option's own
+    type is declared.
+    """
     return Field(default, description=meaning, json_schema_extra={"unit": unit, "source": source}, **limits)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from core.settings.base import Group
 from core.settings.presets import Settings
@@ -19,7 +18,7 @@ def only_declared(settings: Settings, names: Iterable[str]) -> Settings:
     """
     chosen = tuple(names)
     whole = {name for name in chosen if "." not in name}
-    found: dict[str, Any] = {name: getattr(settings, name) for name in whole}
+    found: dict[str, object] = {name: getattr(settings, name) for name in whole}
     single: dict[str, list[str]] = {}
     for name in chosen:
         group, _, option = name.partition(".")
@@ -35,7 +34,7 @@ def only_declared(settings: Settings, names: Iterable[str]) -> Settings:
     return made
 
 
-def declared_values(settings: Settings, names: Iterable[str]) -> dict[str, Any]:
+def declared_values(settings: Settings, names: Iterable[str]) -> dict[str, object]:
     """The values of `only_declared` as JSON by declared name, for the fingerprint of a stage's result."""
     chosen = tuple(names)
     own = only_declared(settings, chosen)
@@ -50,22 +49,22 @@ def _with_only(group: Group, options: Iterable[str]) -> Group:
     return _made_of(type(group), {name: getattr(group, name) for name in options})
 
 
-def _made_of(kind: type[Group], values: Mapping[str, Any]) -> Group:
+def _made_of(kind: type[Group], values: Mapping[str, object]) -> Group:
     """A group that lacks what is not in `values`; values are valid already, so nothing is checked again."""
-    made = kind.model_construct(**values)
+    made = kind.model_construct(None, **values)
     for name in [name for name in made.__dict__ if name not in values]:
         del made.__dict__[name]
     return made
 
 
-def _value(settings: Settings, name: str) -> Any:
-    value: Any = settings
+def _value(settings: Settings, name: str) -> object:
+    value: object = settings
     for part in name.split("."):
         value = getattr(value, part)
     return value
 
 
-def _json(value: Any) -> Any:
+def _json(value: object) -> object:
     if isinstance(value, Group):
         return value.model_dump(mode="json")
     return list(value) if isinstance(value, tuple) else value

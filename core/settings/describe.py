@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, get_args
+
+from pydantic.fields import FieldInfo
 
 from core.settings.presets import PRESET_NAMES, make_settings, option_names
 
@@ -17,17 +20,17 @@ class OptionInfo:
     name: str
     meaning: str
     unit: str
-    default: Any
+    default: object
     range: str
     source: str
-    presets: dict[str, Any]
+    presets: dict[str, object]
     """Value in each preset that differs from the default."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """JSON form."""
         return asdict(self)
 
-    def value(self, preset: str) -> Any:
+    def value(self, preset: str) -> object:
         """Value in a preset."""
         return self.presets.get(preset, self.default)
 
@@ -37,7 +40,7 @@ def describe_options() -> list[OptionInfo]:
     values = {preset: make_settings(preset).model_dump(mode="json") for preset in PRESET_NAMES}
     described = []
     for name, info in option_names().items():
-        extra = info.json_schema_extra or {}
+        extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
         default = _at(values["default"], name)
         described.append(
             OptionInfo(
@@ -53,14 +56,15 @@ def describe_options() -> list[OptionInfo]:
     return described
 
 
-def _at(tree: dict[str, Any], name: str) -> Any:
-    node: Any = tree
+def _at(tree: Mapping[str, object], name: str) -> object:
+    """The value of a dotted name in nested objects."""
+    node: Any = tree  # an object at every step but the last
     for part in name.split("."):
         node = node[part]
     return node
 
 
-def _range(info: Any) -> str:
+def _range(info: FieldInfo) -> str:
     """Allowed values in words: choices, limits or the type."""
     annotation = info.annotation
     kinds = [kind for kind in get_args(annotation) if kind is not type(None)] or [annotation]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 
 from core.errors import BadInput
 from core.names import nearest
@@ -42,7 +43,7 @@ class Settings(Group):
     overrides: tuple[str, ...] = option((), "names that the user set, sorted", source="the run")
 
 
-_PRESETS: dict[str, dict[str, Any]] = {
+_PRESETS: dict[str, dict[str, object]] = {
     "default": {},
     "thesis": {
         "frames.clip_start_s": 2.0,
@@ -98,12 +99,12 @@ _PRESETS: dict[str, dict[str, Any]] = {
 }
 
 
-def option_names() -> dict[str, Any]:
-    """Every option that can be set, dotted name -> pydantic FieldInfo, in the order of declaration."""
+def option_names() -> dict[str, FieldInfo]:
+    """Every option that can be set, dotted name -> its declaration, in the order of declaration."""
     return dict(_walk(Settings, ""))
 
 
-def _walk(model: type[Group], prefix: str) -> Iterator[tuple[str, Any]]:
+def _walk(model: type[Group], prefix: str) -> Iterator[tuple[str, FieldInfo]]:
     for name, info in model.model_fields.items():
         if isinstance(info.annotation, type) and issubclass(info.annotation, Group):
             yield from _walk(info.annotation, f"{prefix}{name}.")
@@ -111,14 +112,14 @@ def _walk(model: type[Group], prefix: str) -> Iterator[tuple[str, Any]]:
             yield f"{prefix}{name}", info
 
 
-def preset_values(preset: str) -> dict[str, Any]:
+def preset_values(preset: str) -> dict[str, object]:
     """Dotted overrides that make `preset` from the defaults; `BadInput` for an unknown preset."""
     if preset not in _PRESETS:
         raise BadInput(f"unknown preset '{preset}'; known: {', '.join(PRESET_NAMES)}", where="preset")
     return dict(_PRESETS[preset])
 
 
-def make_settings(preset: str = "default", options: Mapping[str, Any] | None = None) -> Settings:
+def make_settings(preset: str = "default", options: Mapping[str, object] | None = None) -> Settings:
     """Settings of a preset with named overrides, e.g. ``{"matching.window": 8}``.
 
     Values may be JSON values or text as on the command line. Raises `BadInput` that names the unknown
@@ -131,15 +132,13 @@ def make_settings(preset: str = "default", options: Mapping[str, Any] | None = N
             near = nearest(name, known)
             hint = f"; did you mean '{near}'?" if near else "; `bladeatlas options` lists all"
             raise BadInput(f"unknown option '{name}'{hint}", where=name)
-    tree: dict[str, Any] = {"preset": preset, "overrides": tuple(sorted(chosen))}
+    values: dict[str, object] = {"preset": preset, "overrides": tuple(sorted(chosen))}
+    groups_of_values: dict[str, dict[str, object]] = {}
     for name, value in {**preset_values(preset), **chosen}.items():
-        node = tree
-        *parents, leaf = name.split(".")
-        for parent in parents:
-            node = node.setdefault(parent, {})
-        node[leaf] = value
+        group, _, leaf = name.rpartition(".")
+        (groups_of_values.setdefault(group, {}) if group else values)[leaf] = value
     try:
-        return Settings.model_validate(tree)
+        return Settings.model_validate({**values, **groups_of_values})
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import pycolmap
@@ -63,7 +62,7 @@ ALIGNMENTS = 2
 """The first finds its warps by a model of keypoints that are not aligned."""
 
 Progress = Callable[[float, str], None]
-Align = Callable[[Any, bool], Aligned]
+Align = Callable[[pycolmap.Reconstruction, bool], Aligned]
 """Aligns the keypoints of a model in place; whether observations that do not align are dropped."""
 
 
@@ -71,7 +70,7 @@ Align = Callable[[Any, bool], Aligned]
 class Adjustment:
     """What the final adjustment did."""
 
-    model: Any
+    model: pycolmap.Reconstruction
     """`pycolmap.Reconstruction`"""
     rounds: int
     stable: bool
@@ -87,9 +86,9 @@ class Adjustment:
 
 
 def adjust(
-    model: Any,
-    cache: Any,
-    options: Any,
+    model: pycolmap.Reconstruction,
+    cache: pycolmap.DatabaseCache,
+    options: pycolmap.IncrementalPipelineOptions,
     *,
     refine_principal_point: bool,
     align: Align | None = None,
@@ -153,7 +152,11 @@ def adjust(
 
 
 def _settle(
-    work: Any, options: Any, align: Align | None, trim_tracks: bool, threads: int
+    work: pycolmap.Reconstruction,
+    options: pycolmap.BundleAdjustmentOptions,
+    align: Align | None,
+    trim_tracks: bool,
+    threads: int,
 ) -> tuple[Trimming | None, Aligned | None]:
     """Align keypoints and adjust in turns, in place; what the last choice of tracks and the first alignment did."""
     trimming: Trimming | None = None
@@ -171,7 +174,9 @@ def _settle(
     return trimming, aligned
 
 
-def _judge_lens(model: Any, options: Any, trimmed: bool, judge_radial: bool) -> tuple[PrincipalPoint, RadialTerms]:
+def _judge_lens(
+    model: pycolmap.Reconstruction, options: pycolmap.BundleAdjustmentOptions, trimmed: bool, judge_radial: bool
+) -> tuple[PrincipalPoint, RadialTerms]:
     """Which parts of the lens to free, by a trial on a copy.
 
     Args:
@@ -192,7 +197,7 @@ def _judge_lens(model: Any, options: Any, trimmed: bool, judge_radial: bool) -> 
     return point, radial
 
 
-def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> Any:
+def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> pycolmap.BundleAdjustmentOptions:
     """`BundleAdjustmentOptions` that run until converged."""
     options = pycolmap.BundleAdjustmentOptions()
     options.print_summary = False
@@ -208,7 +213,12 @@ def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int
 
 
 def _refine(
-    model: Any, cache: Any, options: Any, schedule: Sequence[Any], most: int, progress: Callable[[float], None]
+    model: pycolmap.Reconstruction,
+    cache: pycolmap.DatabaseCache,
+    options: pycolmap.IncrementalPipelineOptions,
+    schedule: Sequence[pycolmap.BundleAdjustmentOptions],
+    most: int,
+    progress: Callable[[float], None],
 ) -> tuple[int, bool]:
     """Rounds of completing, adjusting and filtering in place; how many, and whether the last changed nothing.
 
@@ -236,7 +246,12 @@ def _refine(
     return rounds, stable
 
 
-def _retrack(model: Any, cache: Any, options: Any, align: Align | None) -> None:
+def _retrack(
+    model: pycolmap.Reconstruction,
+    cache: pycolmap.DatabaseCache,
+    options: pycolmap.IncrementalPipelineOptions,
+    align: Align | None,
+) -> None:
     """Complete the tracks in place and move their points, with cameras that stay as they are."""
     triangulation, mapping = options.get_triangulation(), options.get_mapper()
     mapper = pycolmap.IncrementalMapper(cache)
@@ -250,7 +265,9 @@ def _retrack(model: Any, cache: Any, options: Any, align: Align | None) -> None:
     mapper.end_reconstruction(False)
 
 
-def _filter(model: Any, cache: Any, options: Any) -> None:
+def _filter(
+    model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache, options: pycolmap.IncrementalPipelineOptions
+) -> None:
     """Drop the observations and points that do not fit, in place."""
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(model)

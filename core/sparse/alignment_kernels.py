@@ -5,11 +5,13 @@ Images are float32 of shape (height, width) with pixel centres at integers; plac
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+from numpy.typing import NDArray
 
 from core.jit import compiled
+
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
 
 FLAT = 1.0
 """Contrast (grey levels) below which a patch shows nothing."""
@@ -20,7 +22,7 @@ SMALL_STEP_PX, LARGE_STEP_PX = 0.005, 1.0
 
 
 @compiled
-def _sample(image: Any, x: float, y: float) -> float:
+def _sample(image: F32, x: float, y: float) -> float:
     """Bilinear value at a place inside the image."""
     column, row = int(np.floor(x)), int(np.floor(y))
     fx, fy = x - column, y - row
@@ -30,7 +32,7 @@ def _sample(image: Any, x: float, y: float) -> float:
 
 
 @compiled
-def take_patches(image: Any, places: Any, patches: Any) -> None:
+def take_patches(image: F32, places: F64, patches: F32) -> None:
     """Fill `patches` (m, s, s), s odd, with the surroundings of (m, 2) `places`; NaN where one leaves the image."""
     side = patches.shape[1]
     half = side // 2
@@ -46,7 +48,7 @@ def take_patches(image: Any, places: Any, patches: Any) -> None:
 
 
 @compiled
-def align_patches(image: Any, patches: Any, warps: Any, weights: Any, most: int, reach: float, places: Any) -> Any:
+def align_patches(image: F32, patches: F32, warps: F64, weights: F64, most: int, reach: float, places: F64) -> F64:
     """Move `places` in place to where the patches are in `image`; (m,) correlations, -1 where none was found.
 
     Lucas and Kanade's iteration in its inverse compositional form (Baker and Matthews 2004) with a translation

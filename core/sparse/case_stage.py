@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
 import pycolmap
 
 from core.checks.model import check_model
 from core.flags import Flag, Severity, worst
 from core.sparse.cases import Case, CaseResult, run_case
-from core.stage import StageResult, StageTask
+from core.stage import Facts, StageResult, StageTask
 from core.task_key import key_of
 from core.viewgraph import read_table
 
@@ -37,7 +35,7 @@ def run_case_task(task: StageTask, kind: str) -> StageResult:
     return StageResult({**_row(task, kind, result), **trust_facts(case_checks(result, case))})
 
 
-def _start_model(task: StageTask) -> Any | None:
+def _start_model(task: StageTask) -> pycolmap.Reconstruction | None:
     """The model named by the plan; None without one, or when that case failed or has no model."""
     name = task.args.get("warm_from")
     folder = task.inputs.get(key_of("coarse", part=str(name))) if name else None
@@ -51,15 +49,15 @@ def case_checks(result: CaseResult, case: Case) -> list[Flag]:
     if result.model is None:
         return []
     table = read_table(case.graph / "graph.npz")
-    return check_model(result.model, result.stats, vars(table), result.frames)
+    return check_model(result.model, result.stats, table, result.frames)
 
 
-def trust_facts(flags: list[Flag]) -> dict[str, Any]:
+def trust_facts(flags: list[Flag]) -> Facts:
     """Facts `checks` and `vetoed`: a finding of severity `error` vetoes a case."""
     return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == Severity.ERROR)}
 
 
-def _row(task: StageTask, kind: str, result: CaseResult) -> dict[str, Any]:
+def _row(task: StageTask, kind: str, result: CaseResult) -> Facts:
     stats = result.stats
     return {
         "name": task.args["name"],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from core.checks.stats import ModelStats, model_stats
 from core.settings.groups import MapperSettings
@@ -15,6 +15,9 @@ from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import Tracks, build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import Frames, read_frames, within
 from core.viewgraph import PairTable, read_table
+
+if TYPE_CHECKING:
+    import pycolmap
 
 MIN_MATCHES = 15
 """Inliers below which a pair takes no part; COLMAP's default."""
@@ -50,12 +53,14 @@ class CaseResult:
     models: int
     start_mode: str
     """``scratch``, ``warm``, or ``warm_then_scratch`` when a warm start was tried and was worse."""
-    model: Any | None
+    model: pycolmap.Reconstruction | None
     stats: ModelStats
     reason: str = ""
 
 
-def run_case(case: Case, start_model: Any | None = None, progress: Progress | None = None) -> CaseResult:
+def run_case(
+    case: Case, start_model: pycolmap.Reconstruction | None = None, progress: Progress | None = None
+) -> CaseResult:
     """Map the frames [start, end) of a case.
 
     Args:
@@ -72,7 +77,7 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
         return CaseResult(n_frames, 0, "scratch", None, NO_MODEL, reason)
     window = _Window(case, frames, table, tracks, progress)
     warm = None if start_model is None else window.map_warm(start_model)
-    if warm is not None and not _is_worse(warm, start_model, n_frames):
+    if warm is not None and start_model is not None and not _is_worse(warm, start_model, n_frames):
         return CaseResult(n_frames, 1, "warm", warm, model_stats(warm))
     mode = "scratch" if start_model is None else "warm_then_scratch"
     n_models, best = window.map_scratch()
@@ -101,7 +106,7 @@ class _Window:
             chosen = choose_keypoints(tracks, frames, case.settings.search_tracks)
             self._search = thin_cache(table, frames, chosen, MIN_MATCHES)
 
-    def map_scratch(self) -> tuple[int, Any | None]:
+    def map_scratch(self) -> tuple[int, pycolmap.Reconstruction | None]:
         """How many models there are, and the best of them with all its points."""
         pairs: list[tuple[int, int]] = []
         if self._settings.initial_pair == "graph":
@@ -111,7 +116,7 @@ class _Window:
         best = best_model(models)
         return len(models), None if best is None else self._whole(best)
 
-    def map_warm(self, start_model: Any) -> Any | None:
+    def map_warm(self, start_model: pycolmap.Reconstruction) -> pycolmap.Reconstruction | None:
         """Go on from the poses of `start_model` that fall into the window; None when that leads nowhere."""
         model = transfer_poses(self._search, start_model)
         if model.num_reg_images() < self._settings.min_model_size:
@@ -122,7 +127,7 @@ class _Window:
             return self._whole(grown[0]) if grown else None
         return densify(self._full, model, self._tracks, self._frames, self._options)
 
-    def _whole(self, model: Any) -> Any:
+    def _whole(self, model: pycolmap.Reconstruction) -> pycolmap.Reconstruction:
         """A model of the search with everything that was held or left out."""
         if not self._settings.refine_distortion:
             model = free_distortion(self._search, model, self._options)
@@ -131,7 +136,7 @@ class _Window:
         return densify(self._full, model, self._tracks, self._frames, self._options)
 
 
-def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:
+def _is_worse(model: pycolmap.Reconstruction, start_model: pycolmap.Reconstruction, n_frames: int) -> bool:
     """Whether a warm model fell clearly behind the one it started from."""
     if 1.0 - model.num_reg_images() / n_frames > SHARE_DROP:
         return True

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from core.checks.stats import ModelStats, model_stats
 from core.sparse.cases import Case, run_case
 from core.sparse.mapper import Progress
+
+if TYPE_CHECKING:
+    import pycolmap
 
 CONFIRM_TRACKS = 1000
 """Keypoints per image that take part when the search takes all; on these COLMAP's own settings are affordable."""
@@ -19,7 +22,7 @@ CLEARLY_WEAKER = 0.97
 Kept = Literal["confirmed", "searched"]
 
 
-def confirm(case: Case, progress: Progress | None = None) -> Any | None:
+def confirm(case: Case, progress: Progress | None = None) -> pycolmap.Reconstruction | None:
     """Map the window from scratch with COLMAP's bundle adjustment; None when that gives no model."""
     settings = case.settings.model_copy(
         update={
@@ -42,8 +45,11 @@ def choose(searched: ModelStats, confirmed: ModelStats | None) -> Kept:
 
 
 def confirmed_or_searched(
-    case: Case, searched: Any, progress: Progress | None = None, is_wrong: Callable[[Any], bool] | None = None
-) -> tuple[Any, Kept]:
+    case: Case,
+    searched: pycolmap.Reconstruction,
+    progress: Progress | None = None,
+    is_wrong: Callable[[pycolmap.Reconstruction], bool] | None = None,
+) -> tuple[pycolmap.Reconstruction, Kept]:
     """The model to go on with and which one it is; a confirmed model that `is_wrong` vetoes is not gone on with."""
     confirmed = confirm(case, progress)
     if confirmed is None or choose(model_stats(searched), model_stats(confirmed)) == "searched":

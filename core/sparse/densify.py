@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pycolmap
 
 from core.sparse.tracks import Tracks
@@ -14,7 +12,7 @@ KEPT_SHARE = 0.98
 """Of its points, a model must keep when its distortion is freed; one that loses more has folded over."""
 
 
-def transfer_poses(cache: Any, model: Any) -> Any:
+def transfer_poses(cache: pycolmap.DatabaseCache, model: pycolmap.Reconstruction) -> pycolmap.Reconstruction:
     """New model over the images of `cache` with the camera and poses of `model`, without points.
 
     Image ids must agree; keypoints need not, so poses found on few keypoints carry over to all.
@@ -31,7 +29,9 @@ def transfer_poses(cache: Any, model: Any) -> Any:
     return target
 
 
-def triangulate(cache: Any, model: Any, options: Any) -> None:
+def triangulate(
+    cache: pycolmap.DatabaseCache, model: pycolmap.Reconstruction, options: pycolmap.IncrementalPipelineOptions
+) -> None:
     """Triangulate the verified tracks of the registered images in place, image by image as COLMAP does."""
     mapper = pycolmap.IncrementalMapper(cache)
     mapper.begin_reconstruction(model)
@@ -40,7 +40,13 @@ def triangulate(cache: Any, model: Any, options: Any) -> None:
     _complete(mapper, options)
 
 
-def densify(cache: Any, model: Any, tracks: Tracks, frames: Frames, options: Any) -> Any:
+def densify(
+    cache: pycolmap.DatabaseCache,
+    model: pycolmap.Reconstruction,
+    tracks: Tracks,
+    frames: Frames,
+    options: pycolmap.IncrementalPipelineOptions,
+) -> pycolmap.Reconstruction:
     """Full model over `cache` from the camera and poses of `model`: every track triangulated, none adjusted.
 
     Poses come out of a bundle adjustment over the longest tracks; another one over all of them cost more than the
@@ -54,7 +60,9 @@ def densify(cache: Any, model: Any, tracks: Tracks, frames: Frames, options: Any
     return full
 
 
-def free_distortion(cache: Any, model: Any, options: Any) -> Any:
+def free_distortion(
+    cache: pycolmap.DatabaseCache, model: pycolmap.Reconstruction, options: pycolmap.IncrementalPipelineOptions
+) -> pycolmap.Reconstruction:
     """`model` adjusted once more with the distortion free, or itself when that loses points.
 
     For models that grew with the distortion held: on the development clip without a first estimate of it, 40 images
@@ -70,7 +78,7 @@ def free_distortion(cache: Any, model: Any, options: Any) -> Any:
     return freed if freed.num_points3D() >= KEPT_SHARE * model.num_points3D() else model
 
 
-def _complete(mapper: Any, options: Any) -> None:
+def _complete(mapper: pycolmap.IncrementalMapper, options: pycolmap.IncrementalPipelineOptions) -> None:
     """Complete and merge tracks over the correspondence graph, filter, and let go of the model."""
     mapper.complete_and_merge_tracks(options.get_triangulation())
     mapper.filter_points(options.get_mapper())

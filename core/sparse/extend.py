@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, transfer_poses, triangulate
@@ -12,6 +12,9 @@ from core.sparse.mapper import Progress, map_images, mapper_options, open_cache
 from core.sparse.tracks import build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import read_frames
 from core.viewgraph import read_table
+
+if TYPE_CHECKING:
+    import pycolmap
 
 MIN_MATCHES = 15
 """Inliers below which a pair takes no part; COLMAP's default."""
@@ -22,14 +25,14 @@ EXTEND_TRACKS = 1000
 
 def register_rest(
     graph: Path,
-    winner: Any,
+    winner: pycolmap.Reconstruction,
     n_frames: int,
     settings: MapperSettings,
     *,
     seed: int,
     threads: int = 1,
     progress: Progress | None = None,
-) -> Any:
+) -> pycolmap.Reconstruction:
     """Model of all frames that can be registered onto `winner`, with every verified track triangulated.
 
     New frames are found on the longest tracks only, the winner's poses held; then all keypoints take part,
@@ -63,6 +66,6 @@ def register_rest(
     return dense
 
 
-def _grown(start: Any, models: Sequence[Any]) -> Any:
+def _grown(start: pycolmap.Reconstruction, models: Sequence[pycolmap.Reconstruction]) -> pycolmap.Reconstruction:
     """What mapping on from `start` gave, or `start` where it lost images: a weak model can come apart."""
     return max([*models, start], key=lambda model: int(model.num_reg_images()))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pycolmap
@@ -24,7 +23,7 @@ from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import build_tracks, thin_cache
 from core.sparse.view_graph import Frames, within
 from core.verification import Verifier
-from core.viewgraph import make_table
+from core.viewgraph import PairTable, make_table
 
 KEYPOINTS = 1000
 """Strongest keypoints per frame that take part."""
@@ -72,7 +71,9 @@ def choose_spans(n_frames: int, length: int, count: int, load: Load) -> list[tup
     return spans
 
 
-def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Load, report: Report) -> SpanFocal:
+def find_focal(
+    span: tuple[int, int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
+) -> SpanFocal:
     """Map one span from `camera` (of the model `core.sparse.lens.ESTIMATE_MODEL`) and refine its focal length and k1.
 
     Args:
@@ -113,7 +114,9 @@ def find_focal(span: tuple[int, int], camera: Any, settings: Settings, load: Loa
     )
 
 
-def _match(span: tuple[int, int], camera: Any, settings: Settings, load: Load, report: Report) -> tuple[Frames, Any]:
+def _match(
+    span: tuple[int, int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
+) -> tuple[Frames, PairTable]:
     """The frames of a span and their verified pairs, with this camera."""
     indices = tuple(range(*span))
     features = {index: strongest(load(index), KEYPOINTS) for index in indices}
@@ -147,7 +150,7 @@ def _liveliness(middle: int, n_frames: int, load: Load) -> float:
     return min(1.0, len(matches) / ENOUGH_MATCHES) * min(motion, ENOUGH_MOTION_PX)
 
 
-def joined(spans: Sequence[SpanFocal]) -> dict[str, Any]:
+def joined(spans: Sequence[SpanFocal]) -> dict[str, float]:
     """One start's facts over its spans; the focal length is the mean in logarithm, weighted by points."""
     weights = np.array([span.points3D for span in spans], dtype=np.float64)
     total = float(weights.sum())

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import pycolmap
@@ -54,7 +54,7 @@ class Attempt:
     shared: int
     outcome: Outcome
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """JSON form."""
         return asdict(self)
 
@@ -73,7 +73,7 @@ class Poses:
         return Poses(self.rotations[which], self.centers[which])
 
 
-def poses_of(model: Any, image_ids: Sequence[int]) -> Poses:
+def poses_of(model: pycolmap.Reconstruction, image_ids: Sequence[int]) -> Poses:
     """Of registered images of a `pycolmap.Reconstruction`."""
     images = [model.image(image_id) for image_id in image_ids]
     return Poses(
@@ -120,15 +120,15 @@ def holds(similarity: Similarity, first: Poses, second: Poses) -> bool:
 
 def join_rest(
     graph: Path,
-    model: Any,
+    model: pycolmap.Reconstruction,
     table: PairTable,
     n_frames: int,
     settings: MapperSettings,
     *,
     seed: int,
-    is_wrong: Callable[[Any], bool],
+    is_wrong: Callable[[pycolmap.Reconstruction], bool],
     threads: int = 1,
-) -> tuple[Any, list[Attempt]]:
+) -> tuple[pycolmap.Reconstruction, list[Attempt]]:
     """`model` with every left-over piece that can be joined to it, and what became of each.
 
     Args:
@@ -157,15 +157,15 @@ def join_rest(
 
 def _join(
     graph: Path,
-    model: Any,
-    piece: Any,
+    model: pycolmap.Reconstruction,
+    piece: pycolmap.Reconstruction,
     table: PairTable,
     n_frames: int,
     settings: MapperSettings,
     seed: int,
-    is_wrong: Callable[[Any], bool],
+    is_wrong: Callable[[pycolmap.Reconstruction], bool],
     threads: int,
-) -> tuple[Any, int, Outcome]:
+) -> tuple[pycolmap.Reconstruction, int, Outcome]:
     shared = sorted(set(model.reg_image_ids()) & set(piece.reg_image_ids()))
     if len(shared) < MIN_SHARED:
         return model, len(shared), "no_shared_images"
@@ -189,7 +189,12 @@ def _join(
     return (model, len(shared), "vetoed") if is_wrong(joined) else (joined, len(shared), "joined")
 
 
-def _with_poses(cache: Any, model: Any, piece: Any, similarity: Similarity) -> Any:
+def _with_poses(
+    cache: pycolmap.DatabaseCache,
+    model: pycolmap.Reconstruction,
+    piece: pycolmap.Reconstruction,
+    similarity: Similarity,
+) -> pycolmap.Reconstruction:
     """Copy of `model` without points, with the images that only `piece` has put into its frame."""
     together = transfer_poses(cache, model)
     camera_id = next(iter(together.cameras))

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -23,6 +23,9 @@ from scipy.spatial import cKDTree
 from core.geometry.pose import camera_centers
 from core.sparse.alignment_kernels import align_patches, take_patches
 from core.sparse.points import poses_of
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -102,7 +105,7 @@ class _Views:
 
 
 def align_keypoints(
-    model: Any, read: Read, still: Bool | None = None, *, drop: bool = True, threads: int = 1
+    model: pycolmap.Reconstruction, read: Read, still: Bool | None = None, *, drop: bool = True, threads: int = 1
 ) -> Aligned:
     """Move keypoints of a model in place.
 
@@ -160,8 +163,7 @@ def _by_image(image: I64, count: int, wanted: Bool | None = None) -> list[I64]:
 
 
 def _smooth(picture: NDArray[np.uint8]) -> F32:
-    smooth: F32 = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), BLUR_PX)
-    return smooth
+    return np.asarray(cv2.GaussianBlur(picture.astype(np.float32), (0, 0), BLUR_PX), np.float32)
 
 
 def _on(mask: Bool | None, places: F64) -> Bool:
@@ -182,12 +184,12 @@ def _weights() -> F64:
     return found
 
 
-def _views(model: Any) -> _Views:
+def _views(model: pycolmap.Reconstruction) -> _Views:
     ids = sorted(int(i) for i in model.reg_image_ids())
     return _Views(ids, [str(model.image(i).name) for i in ids], *poses_of(model, ids))
 
 
-def _tracks(model: Any, views: _Views) -> _Tracks:
+def _tracks(model: pycolmap.Reconstruction, views: _Views) -> _Tracks:
     """References are the images that look most nearly along the mean of their point's viewing directions."""
     row_of = {image_id: row for row, image_id in enumerate(views.ids)}
     keypoints = [np.array([p.xy for p in model.image(i).points2D]).reshape(-1, 2) for i in views.ids]
@@ -225,7 +227,7 @@ def _normals(xyz: F64, towards: F64) -> F64:
     return found
 
 
-def _warps(tracks: _Tracks, views: _Views, camera: Any) -> F64:
+def _warps(tracks: _Tracks, views: _Views, camera: pycolmap.Camera) -> F64:
     """(m, 2, 2) derivative of a place in the image by one in the reference, over the plane of the point."""
     step = 2.0
     columns = [
@@ -235,7 +237,7 @@ def _warps(tracks: _Tracks, views: _Views, camera: Any) -> F64:
     return np.stack(columns, axis=-1)
 
 
-def _carried(tracks: _Tracks, views: _Views, camera: Any, offset: F64) -> F64:
+def _carried(tracks: _Tracks, views: _Views, camera: pycolmap.Camera, offset: F64) -> F64:
     """(m, 2) where the images see what lies on the point's plane at this offset (px) from the reference's keypoint."""
     flat = np.asarray(camera.cam_from_img(np.ascontiguousarray(tracks.reference_xy + offset))).reshape(-1, 2)
     ray = np.einsum("nji,nj->ni", views.R[tracks.reference], np.hstack([flat, np.ones((len(flat), 1))]))
@@ -251,7 +253,7 @@ def _carried(tracks: _Tracks, views: _Views, camera: Any, offset: F64) -> F64:
     return carried
 
 
-def _write(model: Any, views: _Views, tracks: _Tracks, xy: F64, good: Bool, drop: bool) -> None:
+def _write(model: pycolmap.Reconstruction, views: _Views, tracks: _Tracks, xy: F64, good: Bool, drop: bool) -> None:
     """Put the found places into the model; observations without one go where `drop` allows."""
     left = np.bincount(tracks.reference, minlength=len(views.ids))
     left += np.bincount(tracks.image[good], minlength=len(views.ids))

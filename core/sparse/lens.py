@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import pycolmap
 
-from core.flags import Flag, Severity
+from core.flags import Flag, FlagFields, Severity
 from core.settings.groups import CameraSettings
+from core.stage import Facts
 
 MODEL = "OPENCV_FISHEYE"
 ESTIMATE_MODEL = "SIMPLE_RADIAL_FISHEYE"
@@ -41,7 +41,7 @@ def fov_from_focal(focal_px: float, source_width: int) -> float:
     return 2.0 * math.degrees(source_width / 2.0 / focal_px)
 
 
-def principal_point(frames: Mapping[str, Any], settings: CameraSettings) -> tuple[float, float]:
+def principal_point(frames: Facts, settings: CameraSettings) -> tuple[float, float]:
     """(cx, cy) in crop pixels from the facts of stage `frames`."""
     x0, y0, x1, y1 = (float(value) for value in frames["crop"])
     if settings.principal_point == "crop":
@@ -49,7 +49,7 @@ def principal_point(frames: Mapping[str, Any], settings: CameraSettings) -> tupl
     return float(frames["source_width"]) / 2.0 - x0, float(frames["source_height"]) / 2.0 - y0
 
 
-def start_lens(frames: Mapping[str, Any], settings: CameraSettings, fov_deg: float) -> Any:
+def start_lens(frames: Facts, settings: CameraSettings, fov_deg: float) -> pycolmap.Camera:
     """`pycolmap.Camera` of the estimate's lens model for one start; its focal length counts as a prior."""
     width, height = _size(frames)
     cx, cy = principal_point(frames, settings)
@@ -64,9 +64,7 @@ def start_lens(frames: Mapping[str, Any], settings: CameraSettings, fov_deg: flo
     )
 
 
-def choose_lens(
-    frames: Mapping[str, Any], settings: CameraSettings, starts: Sequence[Mapping[str, Any]]
-) -> dict[str, Any]:
+def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]) -> Facts:
     """Content of ``camera.json``, with the starts it was chosen from.
 
     A given field of view counts before everything else; without usable starts it is COLMAP's default, 1.2 times
@@ -74,7 +72,7 @@ def choose_lens(
     """
     width, height = _size(frames)
     focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
-    chosen: Mapping[str, Any] | None = None
+    chosen: Facts | None = None
     if settings.fov_deg is not None:
         focal, origin = focal_from_fov(settings.fov_deg, int(frames["source_width"])), "given"
     elif settings.focal == "estimate":
@@ -98,7 +96,7 @@ def choose_lens(
     }
 
 
-def _best_start(starts: Sequence[Mapping[str, Any]], source_width: int) -> Mapping[str, Any] | None:
+def _best_start(starts: Sequence[Facts], source_width: int) -> Facts | None:
     usable = [
         start
         for start in starts
@@ -115,7 +113,7 @@ def _best_start(starts: Sequence[Mapping[str, Any]], source_width: int) -> Mappi
     return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
 
 
-def _doubts(agreement: float | None) -> list[dict[str, Any]]:
+def _doubts(agreement: float | None) -> list[FlagFields]:
     """Flags of an estimate; without any usable start nothing agrees."""
     share = agreement or 0.0
     if share >= MIN_AGREEMENT:
@@ -124,12 +122,12 @@ def _doubts(agreement: float | None) -> list[dict[str, Any]]:
     return [Flag("focal_uncertain", Severity.WARNING, share, MIN_AGREEMENT, where).to_dict()]
 
 
-def _agreement(starts: Sequence[Mapping[str, Any]], focal: float) -> float:
+def _agreement(starts: Sequence[Facts], focal: float) -> float:
     """Share of all starts that ended near `focal`."""
     near = [start for start in starts if start["registered"] and abs(start["focal_px"] / focal - 1.0) <= AGREE]
     return len(near) / len(starts)
 
 
-def _size(frames: Mapping[str, Any]) -> tuple[int, int]:
+def _size(frames: Facts) -> tuple[int, int]:
     x0, y0, x1, y1 = (int(value) for value in frames["crop"])
     return x1 - x0, y1 - y0

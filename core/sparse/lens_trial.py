@@ -8,7 +8,6 @@ as a free one it would take part of its error from the focal length, and with it
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pycolmap
@@ -41,7 +40,7 @@ class Trial:
 
     reason: str
     """Why there is no covariance: ``few_images``, ``no_covariance``; empty when there is one."""
-    camera: Any = None
+    camera: pycolmap.Camera | None = None
     """`pycolmap.Camera` of the trial."""
     start: F64 | None = None
     """Its parameters before."""
@@ -80,7 +79,7 @@ class RadialTerms:
     """Deviation of the second from 0 beside the first, in sigmas."""
 
 
-def try_lens(model: Any, options: Any) -> Trial:
+def try_lens(model: pycolmap.Reconstruction, options: pycolmap.BundleAdjustmentOptions) -> Trial:
     """Adjust a copy of a model with one camera; `options` is from `adjustment_options` and says what is free."""
     if model.num_reg_images() < MIN_IMAGES:
         return Trial("few_images")
@@ -131,7 +130,7 @@ def judge_principal_point(trial: Trial) -> PrincipalPoint:
 
 def judge_radial_terms(trial: Trial) -> RadialTerms:
     """How many of the two radial terms of a trial differ from 0."""
-    if trial.covariance is None:
+    if trial.covariance is None or trial.camera is None:
         return RadialTerms(2, trial.reason)
     radial = trial.camera.extra_params_idxs()
     k1, k2 = np.array(trial.camera.params)[radial]
@@ -145,7 +144,7 @@ def judge_radial_terms(trial: Trial) -> RadialTerms:
     return RadialTerms(number, "significant" if number else "insignificant", first, second)
 
 
-def keep_covering_points(model: Any, per_image: int) -> None:
+def keep_covering_points(model: pycolmap.Reconstruction, per_image: int) -> None:
     """Delete points in place, all but the longest tracks that give every image `per_image` of them (if it has them)."""
     seen = observe(model)
     order = np.argsort(-seen.lengths, kind="stable")

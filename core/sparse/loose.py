@@ -6,8 +6,6 @@ anywhere, and what was right before is a part of a model that is wrong as a whol
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pycolmap
 
@@ -21,7 +19,7 @@ TYPICAL_SHARE = 0.5
 """A frame with this share of a typical frame's points stays in any model, however few they are."""
 
 
-def drop_loose_ends(model: Any, n_search: int) -> tuple[Any, list[int]]:
+def drop_loose_ends(model: pycolmap.Reconstruction, n_search: int) -> tuple[pycolmap.Reconstruction, list[int]]:
     """The part of a model between weak cuts that has the most images, and the frames taken off.
 
     Args:
@@ -53,7 +51,7 @@ def drop_loose_ends(model: Any, n_search: int) -> tuple[Any, list[int]]:
     return work, sorted(dropped + lost)
 
 
-def drop_faint_frames(model: Any) -> tuple[Any, list[int]]:
+def drop_faint_frames(model: pycolmap.Reconstruction) -> tuple[pycolmap.Reconstruction, list[int]]:
     """The model without the frames that see next to none of its points, and these frames.
 
     In a dark stretch that pairs across it span no cut is weak, and what was registered inside sits anywhere: on a
@@ -78,10 +76,10 @@ def drop_faint_frames(model: Any) -> tuple[Any, list[int]]:
     return work, faint
 
 
-def _points_of(model: Any, frame: int) -> set[int]:
+def _points_of(model: pycolmap.Reconstruction, frame: int) -> set[int]:
     return {point.point3D_id for point in model.image(frame + 1).get_observation_points2D()}
 
 
-def _take_off(model: Any, frames: list[int]) -> None:
+def _take_off(model: pycolmap.Reconstruction, frames: list[int]) -> None:
     for frame in frames:
         model.deregister_frame(model.image(frame + 1).frame_id)

@@ -11,7 +11,6 @@ import copy
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 import pycolmap
 
@@ -31,7 +30,7 @@ PAIR_ANGLE_DEG = 1.0
 """Least median triangulation angle of a given initial pair, which was ranked by its angle already."""
 
 
-def open_cache(database: Path, names: Iterable[str] = (), min_num_matches: int = 15) -> Any:
+def open_cache(database: Path, names: Iterable[str] = (), min_num_matches: int = 15) -> pycolmap.DatabaseCache:
     """`DatabaseCache` of the named images (all when empty) and their verified pairs.
 
     Pairs with fewer than `min_num_matches` inliers are left out (COLMAP's default, 15).
@@ -43,7 +42,9 @@ def open_cache(database: Path, names: Iterable[str] = (), min_num_matches: int =
         return pycolmap.DatabaseCache.create(source, options)
 
 
-def mapper_options(settings: MapperSettings, *, threads: int, seed: int, tuned: bool) -> Any:
+def mapper_options(
+    settings: MapperSettings, *, threads: int, seed: int, tuned: bool
+) -> pycolmap.IncrementalPipelineOptions:
     """`IncrementalPipelineOptions` with the thesis's thresholds.
 
     `tuned` spends less on bundle adjustment while the model grows: equal output, measured, at about half of the
@@ -79,13 +80,13 @@ def mapper_options(settings: MapperSettings, *, threads: int, seed: int, tuned: 
 
 
 def map_images(
-    cache: Any,
-    options: Any,
+    cache: pycolmap.DatabaseCache,
+    options: pycolmap.IncrementalPipelineOptions,
     *,
     pairs: Sequence[tuple[int, int]] = (),
-    start_model: Any | None = None,
+    start_model: pycolmap.Reconstruction | None = None,
     progress: Progress | None = None,
-) -> list[Any]:
+) -> list[pycolmap.Reconstruction]:
     """All models that the images of `cache` give; empty when none.
 
     Args:
@@ -99,7 +100,7 @@ def map_images(
     """
     if start_model is not None:
         return _grow(cache, options, restrict_model(start_model, _names(cache)), progress)
-    models: list[Any] = []
+    models: list[pycolmap.Reconstruction] = []
     for pair in pairs:
         models += _grow(cache, _from_pair(options, pair), pycolmap.Reconstruction(), progress)
         if _largest(models) >= WHOLE_SHARE * cache.num_images():
@@ -109,17 +110,17 @@ def map_images(
     return models
 
 
-def best_model(models: Sequence[Any]) -> Any | None:
+def best_model(models: Sequence[pycolmap.Reconstruction]) -> pycolmap.Reconstruction | None:
     """The model with the highest score; the first of equals; None when there is none."""
     return max(models, key=lambda model: model_stats(model).score, default=None)
 
 
-def registered_names(model: Any) -> list[str]:
+def registered_names(model: pycolmap.Reconstruction) -> list[str]:
     """Names of the registered images, sorted."""
     return sorted(model.image(image_id).name for image_id in model.reg_image_ids())
 
 
-def restrict_model(model: Any, names: Iterable[str]) -> Any:
+def restrict_model(model: pycolmap.Reconstruction, names: Iterable[str]) -> pycolmap.Reconstruction:
     """Copy of `model` with only the named images; points keep the observations that remain."""
     keep = set(names)
     part = pycolmap.Reconstruction(model)
@@ -134,7 +135,9 @@ def restrict_model(model: Any, names: Iterable[str]) -> Any:
         return pycolmap.Reconstruction(folder)
 
 
-def _from_pair(options: Any, pair: tuple[int, int]) -> Any:
+def _from_pair(
+    options: pycolmap.IncrementalPipelineOptions, pair: tuple[int, int]
+) -> pycolmap.IncrementalPipelineOptions:
     """Copy of the options that starts from `pair`, forward motion allowed: its angle was looked at."""
     chosen = copy.deepcopy(options)
     chosen.init_image_id1, chosen.init_image_id2 = pair
@@ -143,7 +146,12 @@ def _from_pair(options: Any, pair: tuple[int, int]) -> Any:
     return chosen
 
 
-def _grow(cache: Any, options: Any, model: Any, progress: Progress | None) -> list[Any]:
+def _grow(
+    cache: pycolmap.DatabaseCache,
+    options: pycolmap.IncrementalPipelineOptions,
+    model: pycolmap.Reconstruction,
+    progress: Progress | None,
+) -> list[pycolmap.Reconstruction]:
     """Register images into `model` (from the options' initial pair when it is empty) until none is left."""
     pipeline = pycolmap.IncrementalPipeline(options, cache, pycolmap.ReconstructionManager())
     mapper = pycolmap.IncrementalMapper(cache)
@@ -153,7 +161,9 @@ def _grow(cache: Any, options: Any, model: Any, progress: Progress | None) -> li
     return [model] if model.num_reg_images() >= options.min_model_size else []
 
 
-def _search(cache: Any, options: Any, progress: Progress | None) -> list[Any]:
+def _search(
+    cache: pycolmap.DatabaseCache, options: pycolmap.IncrementalPipelineOptions, progress: Progress | None
+) -> list[pycolmap.Reconstruction]:
     """COLMAP's pipeline as it is: its own initial pairs, as many models as the options allow."""
     manager = pycolmap.ReconstructionManager()
     pipeline = pycolmap.IncrementalPipeline(options, cache, manager)
@@ -164,7 +174,12 @@ def _search(cache: Any, options: Any, progress: Progress | None) -> list[Any]:
     return [model for model in models if model.num_reg_images() >= options.min_model_size]
 
 
-def _watch(pipeline: Any, count: Callable[[], int], cache: Any, progress: Progress | None) -> None:
+def _watch(
+    pipeline: pycolmap.IncrementalPipeline,
+    count: Callable[[], int],
+    cache: pycolmap.DatabaseCache,
+    progress: Progress | None,
+) -> None:
     if progress is None:
         return
     total = int(cache.num_images())
@@ -172,9 +187,9 @@ def _watch(pipeline: Any, count: Callable[[], int], cache: Any, progress: Progre
     pipeline.add_callback(event.value, lambda: progress(count(), total))
 
 
-def _largest(models: Sequence[Any]) -> int:
+def _largest(models: Sequence[pycolmap.Reconstruction]) -> int:
     return max((int(model.num_reg_images()) for model in models), default=0)
 
 
-def _names(cache: Any) -> list[str]:
+def _names(cache: pycolmap.DatabaseCache) -> list[str]:
     return [image.name for image in cache.images.values()]

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.matching.bridges import components_of, is_strong, select
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
 from core.sparse.mapper import restrict_model
 from core.viewgraph import PairTable
+
+if TYPE_CHECKING:
+    import pycolmap
 
 MIN_FRAMES = 12
 """A piece with fewer frames of its own shows too little to stand for itself."""
@@ -27,9 +31,9 @@ def find_pieces(
     *,
     seed: int,
     limit: int,
-    is_wrong: Callable[[Any], bool],
+    is_wrong: Callable[[pycolmap.Reconstruction], bool],
     progress: Callable[[int, int], None],
-) -> list[Any]:
+) -> list[pycolmap.Reconstruction]:
     """Models (`pycolmap.Reconstruction`, image_id = index + 1) of frames outside `taken`, the largest group first.
 
     Args:
@@ -45,7 +49,7 @@ def find_pieces(
     """
     left = np.array([frame not in taken for frame in range(n_frames)])
     groups = groups_of(table, left)
-    models: list[Any] = []
+    models: list[pycolmap.Reconstruction] = []
     for done, group in enumerate(groups):
         progress(done, len(groups))
         if len(models) == limit:
@@ -66,7 +70,7 @@ def find_pieces(
     return models
 
 
-def groups_of(table: PairTable, left: np.ndarray[Any, np.dtype[np.bool_]]) -> list[Any]:
+def groups_of(table: PairTable, left: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
     """Frames that strong pairs join without the help of frames outside `left`, the largest group first."""
     inside = select(table, is_strong(table) & left[table.pairs].all(axis=1))
     labels = components_of(inside, len(left))

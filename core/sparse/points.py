@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.fisheye import fisheye_radius_and_slope
 from core.jit import compiled
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -57,13 +60,13 @@ class Observations:
         rows: I64 = order[_first(order, self.offsets, self.image, wanted, len(self.image_ids))]
         return rows
 
-    def keep(self, model: Any, rows: I64) -> None:
+    def keep(self, model: pycolmap.Reconstruction, rows: I64) -> None:
         """Delete all other points of the model in place; these observations describe it no longer."""
         for point_id in np.delete(self.point_ids, rows).tolist():
             model.delete_point3D(point_id)
 
 
-def observe(model: Any) -> Observations:
+def observe(model: pycolmap.Reconstruction) -> Observations:
     """All observations of a `pycolmap.Reconstruction`."""
     image_ids = sorted(int(i) for i in model.reg_image_ids())
     seen = [model.image(i).get_observation_points2D() for i in image_ids]
@@ -76,7 +79,7 @@ def observe(model: Any) -> Observations:
     return Observations(point_ids, offsets, np.array(image_ids, np.int64), image[order], xy[order])
 
 
-def move_points(model: Any, seen: Observations, loss_px: float) -> F64:
+def move_points(model: pycolmap.Reconstruction, seen: Observations, loss_px: float) -> F64:
     """Move all points of a model in place; cameras stay.
 
     Args:
@@ -92,22 +95,20 @@ def move_points(model: Any, seen: Observations, loss_px: float) -> F64:
     _move(xyz, seen.offsets, seen.image, seen.xy, R, t, lens, loss_px)
     for point_id, place in zip(seen.point_ids.tolist(), xyz, strict=True):
         model.point3D(point_id).xyz = place
-    found: F64 = _errors(xyz, seen.offsets, seen.image, seen.xy, R, t, lens)
-    return found
+    return _errors(xyz, seen.offsets, seen.image, seen.xy, R, t, lens)
 
 
-def errors_px(model: Any, seen: Observations) -> F64:
+def errors_px(model: pycolmap.Reconstruction, seen: Observations) -> F64:
     """(n,) mean error of every point in px, where it is."""
-    found: F64 = _errors(_places(model, seen), seen.offsets, seen.image, seen.xy, *_cameras(model, seen))
-    return found
+    return _errors(_places(model, seen), seen.offsets, seen.image, seen.xy, *_cameras(model, seen))
 
 
-def _places(model: Any, seen: Observations) -> F64:
+def _places(model: pycolmap.Reconstruction, seen: Observations) -> F64:
     """(n, 3)"""
     return np.array([model.point3D(i).xyz for i in seen.point_ids.tolist()]).reshape(-1, 3)
 
 
-def _cameras(model: Any, seen: Observations) -> tuple[F64, F64, F64]:
+def _cameras(model: pycolmap.Reconstruction, seen: Observations) -> tuple[F64, F64, F64]:
     """Rotations (f, 3, 3), translations (f, 3) and (fx, fy, cx, cy, k1, k2, k3, k4)."""
     camera = next(iter(model.cameras.values()))
     params, lens = np.array(camera.params), np.zeros(8)
@@ -118,7 +119,7 @@ def _cameras(model: Any, seen: Observations) -> tuple[F64, F64, F64]:
     return *poses_of(model, seen.image_ids.tolist()), lens
 
 
-def poses_of(model: Any, image_ids: Sequence[int]) -> tuple[F64, F64]:
+def poses_of(model: pycolmap.Reconstruction, image_ids: Sequence[int]) -> tuple[F64, F64]:
     """cam_from_world of registered images: rotations (f, 3, 3) and translations (f, 3)."""
     poses = [model.image(i).cam_from_world() for i in image_ids]
     R = np.array([pose.rotation.matrix() for pose in poses]).reshape(-1, 3, 3)
@@ -126,7 +127,7 @@ def poses_of(model: Any, image_ids: Sequence[int]) -> tuple[F64, F64]:
 
 
 @compiled
-def _first(order: Any, offsets: Any, image: Any, wanted: Any, n_images: int) -> Any:
+def _first(order: I64, offsets: I64, image: I64, wanted: I64, n_images: int) -> NDArray[np.bool_]:
     counts, taken = np.zeros(n_images, np.int64), np.zeros(len(order), np.bool_)
     for position in range(len(order)):
         point = order[position]
@@ -143,7 +144,7 @@ def _first(order: Any, offsets: Any, image: Any, wanted: Any, n_images: int) -> 
 
 
 @compiled
-def _project(place: Any, R: Any, t: Any, lens: Any, jacobian: Any) -> tuple[float, float]:
+def _project(place: F64, R: F64, t: F64, lens: F64, jacobian: F64) -> tuple[float, float]:
     """Pixel where a camera sees a place (3,); the derivative by the place goes to `jacobian` (2, 3)."""
     x = R[0, 0] * place[0] + R[0, 1] * place[1] + R[0, 2] * place[2] + t[0]
     y = R[1, 0] * place[0] + R[1, 1] * place[1] + R[1, 2] * place[2] + t[1]
@@ -165,7 +166,7 @@ def _project(place: Any, R: Any, t: Any, lens: Any, jacobian: Any) -> tuple[floa
 
 
 @compiled
-def _cost(place: Any, begin: int, end: int, image: Any, xy: Any, R: Any, t: Any, lens: Any, loss: float) -> float:
+def _cost(place: F64, begin: int, end: int, image: I64, xy: F64, R: F64, t: F64, lens: F64, loss: float) -> float:
     jacobian, total = np.empty((2, 3)), 0.0
     for k in range(begin, end):
         u, v = _project(place, R[image[k]], t[image[k]], lens, jacobian)
@@ -174,7 +175,7 @@ def _cost(place: Any, begin: int, end: int, image: Any, xy: Any, R: Any, t: Any,
 
 
 @compiled
-def _step(A: Any, b: Any, damping: float, out: Any) -> None:
+def _step(A: F64, b: F64, damping: float, out: F64) -> None:
     """Solve (A + damping diag A) x = b, A symmetric (3, 3), by its cofactors; NaN where it cannot be solved."""
     d0, d1, d2 = A[0, 0] * (1.0 + damping), A[1, 1] * (1.0 + damping), A[2, 2] * (1.0 + damping)
     a, c, e = A[0, 1], A[0, 2], A[1, 2]
@@ -190,7 +191,7 @@ def _step(A: Any, b: Any, damping: float, out: Any) -> None:
 
 
 @compiled
-def _move(xyz: Any, offsets: Any, image: Any, xy: Any, R: Any, t: Any, lens: Any, loss: float) -> None:
+def _move(xyz: F64, offsets: I64, image: I64, xy: F64, R: F64, t: F64, lens: F64, loss: float) -> None:
     jacobian, normal, side, step = np.empty((2, 3)), np.empty((3, 3)), np.empty(3), np.empty(3)
     for n in range(len(xyz)):
         begin, end = offsets[n], offsets[n + 1]
@@ -221,7 +222,7 @@ def _move(xyz: Any, offsets: Any, image: Any, xy: Any, R: Any, t: Any, lens: Any
 
 
 @compiled
-def _errors(xyz: Any, offsets: Any, image: Any, xy: Any, R: Any, t: Any, lens: Any) -> Any:
+def _errors(xyz: F64, offsets: I64, image: I64, xy: F64, R: F64, t: F64, lens: F64) -> F64:
     jacobian, errors = np.empty((2, 3)), np.empty(len(xyz))
     for n in range(len(xyz)):
         total = 0.0

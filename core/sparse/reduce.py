@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
 from core.flags import error_codes
+from core.stage import Facts
 from core.task_key import parts_of
 
-Row = Mapping[str, Any]
+Row = Facts
+"""Facts of a case, see `core.sparse.case_stage`."""
 
 WINNER_FIELDS = ("start", "end", "kind", "registered_images", "points3D", "start_mode")
 RANKING_FIELDS = ("name", "verified_detections", "registered_images", "points3D")
@@ -40,7 +41,7 @@ def rank(rows: Sequence[Row], veto: bool = True) -> list[Row]:
     return sorted(by_name, key=lambda row: standing(row, veto), reverse=True)
 
 
-def reduce_cases(rows: Sequence[Row], veto: bool = True) -> dict[str, Any]:
+def reduce_cases(rows: Sequence[Row], veto: bool = True) -> Facts:
     """Facts of the reducer over the cases that ended.
 
     A vetoed case can win here when all are: refinement may still find a model to trust around it.
@@ -52,7 +53,7 @@ def reduce_cases(rows: Sequence[Row], veto: bool = True) -> dict[str, Any]:
     return _facts(ranking[0], ranking)
 
 
-def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) -> dict[str, Any]:
+def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) -> Facts:
     """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
 
     Rows may have `verified_detections`, all of them or none.
@@ -70,7 +71,7 @@ def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) 
     return _facts(winner, [winner, *sorted(others, key=lambda row: standing(row, veto), reverse=True)])
 
 
-def case_rows(facts: Mapping[str, Mapping[str, Any]], stage: str) -> list[Row]:
+def case_rows(facts: Mapping[str, Facts], stage: str) -> list[Row]:
     """Rows of the cases of `stage` among a task's facts, ordered by key."""
     return [facts[key] for key in parts_of(facts, stage)]
 
@@ -83,7 +84,7 @@ def find_row(rows: Sequence[Row], name: str) -> Row:
     raise StageFailed(f"the case {name} has no row", where="search")
 
 
-def _facts(winner: Row, ranking: Sequence[Row]) -> dict[str, Any]:
+def _facts(winner: Row, ranking: Sequence[Row]) -> Facts:
     return {
         "best": winner["name"],
         **{field: winner[field] for field in WINNER_FIELDS},

@@ -9,7 +9,6 @@ search maps with the longest tracks only, spread over every frame, and triangula
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -89,7 +88,9 @@ def choose_keypoints(tracks: Tracks, frames: Frames, count: int) -> dict[int, np
     return chosen
 
 
-def thin_cache(graph: PairTable, frames: Frames, chosen: dict[int, npt.NDArray[np.int64]], min_num_matches: int) -> Any:
+def thin_cache(
+    graph: PairTable, frames: Frames, chosen: dict[int, npt.NDArray[np.int64]], min_num_matches: int
+) -> pycolmap.DatabaseCache:
     """`DatabaseCache` in memory with the chosen keypoints only; its keypoint indices are new.
 
     Pairs that keep fewer than `min_num_matches` inliers are left out, as `open_cache` does.
@@ -117,7 +118,9 @@ def thin_cache(graph: PairTable, frames: Frames, chosen: dict[int, npt.NDArray[n
     return cache
 
 
-def _add_image(cache: Any, image_id: int, name: str, keypoints: npt.NDArray[np.float64], camera_id: int) -> None:
+def _add_image(
+    cache: pycolmap.DatabaseCache, image_id: int, name: str, keypoints: npt.NDArray[np.float64], camera_id: int
+) -> None:
     image = pycolmap.Image(name=name, keypoints=keypoints, camera_id=camera_id, image_id=image_id)
     frame = pycolmap.Frame()
     frame.frame_id, frame.rig_id = image_id, 1
@@ -197,5 +200,5 @@ def _join_python(edges: npt.NDArray[np.int64], frame: npt.NDArray[np.int64], n_f
     return parent
 
 
-_take: Any = compiled(_take_python)
-_join: Any = compiled(_join_python)
+_take = compiled(_take_python)
+_join = compiled(_join_python)

@@ -7,8 +7,6 @@ observations that do not fit removed one by one.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 import pycolmap
@@ -26,7 +24,7 @@ MIN_LENGTH = 3
 """Two views cannot contradict each other: COLMAP's `ignore_two_view_tracks`."""
 
 
-def add_track_points(model: Any, tracks: Tracks, frames: Frames) -> int:
+def add_track_points(model: pycolmap.Reconstruction, tracks: Tracks, frames: Frames) -> int:
     """Add the points of `tracks` that the registered images of `model` see well; returns how many.
 
     Args:
@@ -54,7 +52,7 @@ def add_track_points(model: Any, tracks: Tracks, frames: Frames) -> int:
 
 
 def _world_rays(
-    model: Any, ids: list[int], tracks: Tracks, frames: Frames, row: npt.NDArray[np.int64]
+    model: pycolmap.Reconstruction, ids: list[int], tracks: Tracks, frames: Frames, row: npt.NDArray[np.int64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Unit rays (total, 3) in the world of all observations in registered images, and centres (images, 3)."""
     keypoints = dict(zip(frames.indices, frames.keypoints, strict=True))
@@ -69,17 +67,17 @@ def _world_rays(
         if len(mine) == 0:
             continue
         xy = keypoints[image_id - 1][tracks.keypoint[mine]]
-        in_camera = np.asarray(image.camera.cam_ray_from_img(xy))
+        in_camera = np.asarray(model.camera(image.camera_id).cam_ray_from_img(xy))
         rays[mine] = in_camera @ image.cam_from_world().rotation.matrix()
     return rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12), centers
 
 
-Array = npt.NDArray[Any]
+F64 = npt.NDArray[np.float64]
+I64 = npt.NDArray[np.int64]
+Bool = npt.NDArray[np.bool_]
 
 
-def _solve(
-    offsets: Array, row: Array, rays: Array, centers: Array, max_error: float, max_cosine: float
-) -> tuple[Array, Array]:
+def _solve(offsets: I64, row: I64, rays: F64, centers: F64, max_error: float, max_cosine: float) -> tuple[F64, Bool]:
     """Points (n, 3) of all tracks, NaN where there is none, and which observations (total,) belong to them.
 
     The observation of a track that fits worst goes while its angle exceeds `max_error` (rad); all tracks that lost
@@ -107,7 +105,7 @@ def _solve(
     return points, kept & np.isfinite(points[track, 0])
 
 
-def _nearest(starts: Array, rays: Array, centers: Array) -> Array:
+def _nearest(starts: I64, rays: F64, centers: F64) -> F64:
     """Points (n, 3) with the least squared distance to their rays, in angle; NaN where the rays are parallel.
 
     Rows of `rays` and `centers` from one of `starts` to the next belong together. Distances are weighted by the
@@ -129,18 +127,18 @@ def _nearest(starts: Array, rays: Array, centers: Array) -> Array:
         points[~solvable] = np.nan
         distance = np.linalg.norm(np.repeat(points, lengths, axis=0) - centers, axis=1)
         weight = 1.0 / np.maximum(np.where(np.isfinite(distance), distance, 1.0) ** 2, 1e-12)
-    found: Array = points
+    found: F64 = points
     return found
 
 
-def _toward(points: Array, centers: Array) -> Array:
+def _toward(points: F64, centers: F64) -> F64:
     """Unit vectors (n, 3) from the centres to the points."""
     lines = points - centers
-    unit: Array = lines / np.maximum(np.linalg.norm(lines, axis=1, keepdims=True), 1e-12)
+    unit: F64 = lines / np.maximum(np.linalg.norm(lines, axis=1, keepdims=True), 1e-12)
     return unit
 
 
-def _cosine_of_opening(track: Array, row: Array, kept: Array, points: Array, centers: Array) -> Array:
+def _cosine_of_opening(track: I64, row: I64, kept: Bool, points: F64, centers: F64) -> F64:
     """Cosine of the angle (n,) under which the kept views of each point lie apart; 1 for points without views.
 
     Measured from the view that is farthest from the first one, to which the widest pair of a path nearly belongs.

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pycolmap
@@ -51,7 +50,7 @@ POINT_LOSS_PX = 1.0
 
 LENSES = {0: "SIMPLE_FISHEYE", 1: "SIMPLE_RADIAL_FISHEYE", 2: "RADIAL_FISHEYE", 4: "OPENCV_FISHEYE"}
 
-Options = Callable[[float], Any]
+Options = Callable[[float], pycolmap.BundleAdjustmentOptions]
 """`BundleAdjustmentOptions` for a scale of Cauchy's loss in px; which parameters are free is the caller's."""
 
 
@@ -74,7 +73,7 @@ class Trimming:
         return self.focal_after_px / self.focal_before_px - 1.0
 
 
-def trim(model: Any, options: Options, terms: Sequence[int] = TERMS) -> Trimming:
+def trim(model: pycolmap.Reconstruction, options: Options, terms: Sequence[int] = TERMS) -> Trimming:
     """Adjust cameras and lens in place to the better part of the tracks; all points then follow from them.
 
     Args:
@@ -110,7 +109,7 @@ def trim(model: Any, options: Options, terms: Sequence[int] = TERMS) -> Trimming
     return Trimming(rounds, kept, scale, before, focal)
 
 
-def set_lens(model: Any, terms: int) -> None:
+def set_lens(model: pycolmap.Reconstruction, terms: int) -> None:
     """Give the one camera of a model so many radial terms in place: 0 to 2, or the 4 of OPENCV_FISHEYE."""
     camera = next(iter(model.cameras.values()))
     params = np.array(camera.params)
@@ -123,7 +122,7 @@ def set_lens(model: Any, terms: int) -> None:
     camera.params = np.concatenate([focals, center, distortion[:terms]])
 
 
-def keep_agreeing(model: Any, per_image: int = PER_IMAGE) -> None:
+def keep_agreeing(model: pycolmap.Reconstruction, per_image: int = PER_IMAGE) -> None:
     """Keep of the points of a model, in place, those that agree best and hold its cameras."""
     seen = observe(model)
     seen.keep(model, agreeing(_noise(errors_px(model, seen), seen), seen, per_image))
@@ -163,7 +162,7 @@ def _noise(errors: F64, seen: Observations) -> F64:
     return noise
 
 
-def whole(model: Any) -> Any:
+def whole(model: pycolmap.Reconstruction) -> pycolmap.BundleAdjustmentConfig:
     """`BundleAdjustmentConfig` of everything in a model, its gauge held by two cameras."""
     config = pycolmap.BundleAdjustmentConfig()
     for image_id in sorted(model.reg_image_ids()):
@@ -172,12 +171,12 @@ def whole(model: Any) -> Any:
     return config
 
 
-def solve(model: Any, options: Any) -> None:
+def solve(model: pycolmap.Reconstruction, options: pycolmap.BundleAdjustmentOptions) -> None:
     """Adjust everything in a model in place."""
     pycolmap.create_default_ceres_bundle_adjuster(options, whole(model), model).solve()
 
 
-def _take_cameras(model: Any, source: Any) -> None:
+def _take_cameras(model: pycolmap.Reconstruction, source: pycolmap.Reconstruction) -> None:
     for camera_id, camera in source.cameras.items():
         model.camera(camera_id).params = camera.params
     for image_id in sorted(source.reg_image_ids()):
@@ -185,5 +184,5 @@ def _take_cameras(model: Any, source: Any) -> None:
         model.frame(model.image(image_id).frame_id).set_cam_from_world(image.camera_id, image.cam_from_world())
 
 
-def _focal(model: Any) -> float:
+def _focal(model: pycolmap.Reconstruction) -> float:
     return float(next(iter(model.cameras.values())).mean_focal_length())

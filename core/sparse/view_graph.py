@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -39,7 +38,7 @@ class Frames:
     names: tuple[str, ...]
     keypoints: tuple[npt.NDArray[np.float64], ...]
     """(n, 2) each, crop pixels."""
-    camera: Any
+    camera: pycolmap.Camera
     """`pycolmap.Camera`, shared."""
 
 

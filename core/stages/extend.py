@@ -113,7 +113,7 @@ def _aligner(task: StageTask) -> Align:
 
 def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int) -> Facts:
     stats = model_stats(model)
-    flags = check_model(model, stats, vars(table), n_frames, n_search)
+    flags = check_model(model, stats, table, n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:
         flags += filter(None, [check_shift(adjustment.trimming.shift)])
     params = np.array(next(iter(model.cameras.values())).params)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cv2
+import numpy as np
 import pycolmap
 
 from core.dense.cameras import choose_pinhole
@@ -45,7 +46,9 @@ def run(task: StageTask) -> StageResult:
         image = cv2.imread(str(task.input("frames") / "images" / name), cv2.IMREAD_COLOR)
         if image is None:
             raise StageFailed(f"frame {name} cannot be read", where=name)
-        cv2.imwrite(str(images / name), mapping.apply(image), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+        cv2.imwrite(
+            str(images / name), mapping.apply(np.asarray(image, np.uint8)), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
+        )
     cv2.imwrite(str(task.out / "mask.png"), mapping.inside.astype("uint8") * 255)
     write_views(task.out / "views.json", plan)
     return StageResult(

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.surface.ply import Mesh
+from core.surface.ply import Mesh, Values
 
 GLTF_FROM_WORLD = np.diag([1.0, -1.0, -1.0])
 """glTF is y-up and looks along -z; COLMAP's camera frames, and so its worlds, are y-down and look along +z."""
@@ -74,12 +73,12 @@ class _Buffer:
 
     def __init__(self) -> None:
         self.data = bytearray()
-        self.views: list[dict[str, Any]] = []
-        self.accessors: list[dict[str, Any]] = []
+        self.views: list[dict[str, object]] = []
+        self.accessors: list[dict[str, object]] = []
 
     def add(
         self,
-        values: NDArray[Any],
+        values: Values,
         component: int,
         kind: str,
         target: int,
@@ -91,7 +90,7 @@ class _Buffer:
         raw = np.ascontiguousarray(values).tobytes()
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw), "target": target})
         self.data += raw + b"\0" * (-len(raw) % 4)
-        accessor: dict[str, Any] = {
+        accessor: dict[str, object] = {
             "bufferView": len(self.views) - 1,
             "componentType": component,
             "count": len(values),
@@ -106,7 +105,7 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def _document(buffer: _Buffer, attributes: dict[str, int], indices: int, unit: str) -> dict[str, Any]:
+def _document(buffer: _Buffer, attributes: dict[str, int], indices: int, unit: str) -> dict[str, object]:
     return {
         "asset": {
             "version": "2.0",
@@ -126,7 +125,7 @@ def _document(buffer: _Buffer, attributes: dict[str, int], indices: int, unit: s
     }
 
 
-def _write(path: Path, document: dict[str, Any], binary: bytes) -> None:
+def _write(path: Path, document: dict[str, object], binary: bytes) -> None:
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
     total = 12 + 8 + len(text) + 8 + len(binary)

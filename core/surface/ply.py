@@ -16,6 +16,8 @@ from core.errors import StageFailed
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 U8 = NDArray[np.uint8]
+Values = NDArray[Any]
+"""Numbers of any type: a vertex property keeps that of its file."""
 
 _KNOWN = ("x", "y", "z", "nx", "ny", "nz", "red", "green", "blue")
 
@@ -32,7 +34,7 @@ class Mesh:
     """(n, 3) RGB."""
     normals: F64 | None = None
     """(n, 3) unit normals."""
-    extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    extra: Mapping[str, Values] = field(default_factory=dict)
     """Further (n,) vertex properties by name, e.g. ``support``, ``defect_id``."""
     comments: tuple[str, ...] = ()
 
@@ -98,7 +100,7 @@ def _comments(mesh: Mesh, comments: Sequence[str] | None) -> Sequence[str]:
     return mesh.comments if comments is None else comments
 
 
-def _read(path: Path) -> Any:
+def _read(path: Path) -> PlyData:
     """Triangles are read at once when every face is one, else face by face (thirty times slower)."""
     for name in ("vertex_indices", "vertex_index"):
         try:
@@ -108,11 +110,11 @@ def _read(path: Path) -> Any:
     return PlyData.read(str(path), mmap=False)
 
 
-def _columns(table: NDArray[Any], names: tuple[str, ...], dtype: Any) -> NDArray[Any]:
+def _columns(table: Values, names: tuple[str, ...], dtype: type[np.generic]) -> Values:
     return np.stack([np.asarray(table[name], dtype=dtype) for name in names], axis=1)
 
 
-def _faces(element: Any, path: Path) -> I32:
+def _faces(element: PlyElement, path: Path) -> I32:
     names = [prop.name for prop in element.properties if isinstance(prop, PlyListProperty)]
     if not names or not len(element.data):
         return np.zeros((0, 3), np.int32)
@@ -122,8 +124,8 @@ def _faces(element: Any, path: Path) -> I32:
     return np.asarray(np.stack(lists) if lists.dtype == object else lists, dtype=np.int32).reshape(-1, 3)
 
 
-def _vertex_table(mesh: Mesh) -> NDArray[Any]:
-    columns: list[tuple[str, str, NDArray[Any]]] = [
+def _vertex_table(mesh: Mesh) -> Values:
+    columns: list[tuple[str, str, Values]] = [
         (name, "<f4", mesh.vertices[:, i]) for i, name in enumerate(("x", "y", "z"))
     ]
     if mesh.normals is not None:

@@ -37,7 +37,7 @@ def poisson_mesh(cloud: Path, out: Path, settings: MeshSettings) -> Mesh:
     options = pycolmap.PoissonMeshingOptions()
     options.depth = settings.poisson_depth
     options.trim = settings.poisson_trim
-    options.color = 1.0
+    options.color = True
     options.num_threads = 1
     pycolmap.poisson_meshing(str(cloud), str(out), options)
     mesh = read_mesh(out) if out.exists() else None

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import av
+from av.container import InputContainer
 from av.stream import Disposition
 
 from core.errors import BadInput
@@ -51,7 +52,7 @@ class VideoStream:
         return f"stream {self.index} ({self.codec}, {self.width}x{self.height}{frames})"
 
 
-def open_container(path: Path) -> Any:
+def open_container(path: Path) -> InputContainer:
     """Open a file with FFmpeg, as a file whatever its name looks like.
 
     Raises:
@@ -73,7 +74,9 @@ def open_container(path: Path) -> Any:
         ) from None
 
 
-def film_of(container: Any, name: str, wanted: int | None = None) -> tuple[Any, tuple[VideoStream, ...]]:
+def film_of(
+    container: InputContainer, name: str, wanted: int | None = None
+) -> tuple[av.VideoStream, tuple[VideoStream, ...]]:
     """The stream that holds the film, and all video streams of the file.
 
     Args:
@@ -102,6 +105,11 @@ def film_of(container: Any, name: str, wanted: int | None = None) -> tuple[Any, 
     raise BadInput(f"'{name}' holds no video", code="not_a_video", where="video")
 
 
+def time_base_of(stream: av.VideoStream) -> Fraction:
+    """Seconds per unit of a stream's times; `film_of` takes no stream without one."""
+    return Fraction(cast(Fraction, stream.time_base))
+
+
 def choose_film(streams: Sequence[VideoStream]) -> VideoStream | None:
     """The film among the video streams of a file: never a picture or a preview.
 
@@ -125,7 +133,7 @@ def _sizes(films: Sequence[VideoStream]) -> dict[int, int]:
     return {one.index: one.width * one.height * (one.frames if counted else 1) for one in films}
 
 
-def _described(container: Any, stream: Any) -> VideoStream:
+def _described(container: InputContainer, stream: av.VideoStream) -> VideoStream:
     codec = stream.codec_context
     return VideoStream(
         index=int(stream.index),
@@ -138,7 +146,7 @@ def _described(container: Any, stream: Any) -> VideoStream:
     )
 
 
-def _declared_frames(container: Any, stream: Any) -> int:
+def _declared_frames(container: InputContainer, stream: av.VideoStream) -> int:
     if stream.frames:
         return int(stream.frames)
     # Matroska writers count and time each stream only in tags.
@@ -149,7 +157,7 @@ def _declared_frames(container: Any, stream: Any) -> int:
     if clock:
         seconds = int(clock[1]) * 3600 + int(clock[2]) * 60 + Fraction(clock[3])
     elif stream.duration is not None:
-        seconds = stream.duration * Fraction(stream.time_base)
+        seconds = stream.duration * time_base_of(stream)
     elif container.duration is not None:
         seconds = Fraction(container.duration, av.time_base)
     else:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, cast
 
 import av
 import numpy as np
@@ -23,10 +23,15 @@ from numpy.typing import NDArray
 
 from core.errors import BadInput
 from core.video.clock import FALLBACK_RATE, PresentationClock
-from core.video.container import film_of, open_container, require_pixels
+from core.video.container import film_of, open_container, require_pixels, time_base_of
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.orientation import Orientation
 from core.video.soundness import Loss, Sent, SoundFrames, shows_picture
+
+if TYPE_CHECKING:
+    from av.packet import Packet
+    from av.sidedata.sidedata import SideDataContainer
+    from av.video.stream import VideoStream
 
 _DECLARING_FORMATS = frozenset({"mov", "matroska", "avi", "flv", "asf"})
 """Containers whose header states a duration; elsewhere it is estimated and says nothing about damage."""
@@ -47,12 +52,12 @@ class DecodedFrame:
     pts: int
     """Presentation time in units of the reader's time base, strictly increasing."""
     keyframe: bool
-    _frame: Any = field(repr=False)
+    _frame: av.VideoFrame = field(repr=False)
     _orientation: Orientation = field(repr=False)
 
     def rgb(self) -> NDArray[np.uint8]:
         """(h, w, 3) uint8 RGB, as shown."""
-        return self._orientation.apply(self._frame.to_ndarray(format="rgb24"))
+        return self._orientation.apply(np.asarray(self._frame.to_ndarray(format="rgb24"), np.uint8))
 
 
 class VideoReader:
@@ -89,7 +94,7 @@ class VideoReader:
         self._stream.thread_type = "NONE"
         codec.flags |= Flags.copy_opaque  # a frame then carries the number of its packet
         self.stream_index = int(self._stream.index)
-        self.time_base = Fraction(self._stream.time_base)
+        self.time_base = time_base_of(self._stream)
         rate = self._stream.average_rate
         self.declared_rate = Fraction(rate) if rate else None
         self.declared_frames = int(self._stream.frames)
@@ -97,7 +102,7 @@ class VideoReader:
         self.faults: list[str] = []
         self.orientation = Orientation()
         self._clock = PresentationClock(self.time_base, self.declared_rate)
-        self._sound = SoundFrames()
+        self._sound: SoundFrames[av.VideoFrame] = SoundFrames()
         self._first_s: Fraction | None = None
         self._end_s = Fraction(0)
         self._video_end = 0
@@ -147,7 +152,7 @@ class VideoReader:
             yield DecodedFrame(index, pts, bool(frame.key_frame), frame, self.orientation)
         self._clock.finish()
 
-    def _stamp(self, frame: Any) -> int | None:
+    def _stamp(self, frame: av.VideoFrame) -> int | None:
         """Time of a frame as the file has it; None when it has none."""
         if "avi" not in self._format:
             return None if frame.pts is None else int(frame.pts)
@@ -156,7 +161,7 @@ class VideoReader:
         self._chunk = int(frame.dts) if frame.dts is not None else self._chunk + 1
         return self._chunk
 
-    def _sound_frames(self) -> Iterator[Any]:
+    def _sound_frames(self) -> Iterator[av.VideoFrame]:
         """Frames that depend on nothing broken."""
         duration = 1 / ((self.declared_rate or FALLBACK_RATE) * self.time_base)
         for frame in self._decode():
@@ -165,7 +170,7 @@ class VideoReader:
                 self._sound.came(frame, duration)
             yield from self._sound.sound()
 
-    def _decode(self) -> Iterator[Any]:
+    def _decode(self) -> Iterator[av.VideoFrame | None]:
         """Frames of the stream as the decoder gives them; None once it holds none back any more."""
         decoder = self._stream.codec_context
         number = -1
@@ -194,20 +199,20 @@ class VideoReader:
         if number + 1 < self._listed:
             self._fault(f"{self._listed - number - 1} of the {self._listed} frames that its index lists are missing")
 
-    def _drained(self) -> list[Any]:
+    def _drained(self) -> list[av.VideoFrame]:
         """What the decoder still holds."""
         try:
             return list(self._stream.codec_context.decode(None))
         except av.error.FFmpegError:
             return []
 
-    def _checked_packets(self) -> Iterator[tuple[Any, bool]]:
+    def _checked_packets(self) -> Iterator[tuple[Packet[VideoStream], bool]]:
         """Packets, and whether each is whole.
 
         Transport streams number their pieces. Where two recordings meet the numbers do not go on, and one of the last
         packets of the first one is marked as cut off, which it is not.
         """
-        waiting: deque[Any] = deque()
+        waiting: deque[Packet[VideoStream]] = deque()
         for packet in self._packets():
             if waiting and _starts_again(packet, waiting[-1]):
                 yield from ((one, True) for one in waiting)
@@ -218,7 +223,7 @@ class VideoReader:
                 yield one, not one.is_corrupt
         yield from ((one, not one.is_corrupt) for one in waiting)
 
-    def _packets(self) -> Iterator[Any]:
+    def _packets(self) -> Iterator[Packet[VideoStream]]:
         """Packets of the stream that hold something; those of all streams count towards how far the file reaches."""
         packets = self._container.demux()
         while True:
@@ -235,14 +240,16 @@ class VideoReader:
                 self._end_s = max(self._end_s, start + (packet.duration or 0) * Fraction(packet.time_base))
             # An empty packet would tell the decoder that nothing follows.
             if packet.stream_index == self.stream_index and packet.size:
-                yield packet
+                yield cast("Packet[VideoStream]", packet)  # by its number
 
     def _fault(self, what: str) -> None:
         if what not in self.faults:
             self.faults.append(what)
 
-    def _read_orientation(self, frame: Any) -> Orientation:
-        matrix = frame.side_data.get(SideDataType.DISPLAYMATRIX)
+    def _read_orientation(self, frame: av.VideoFrame) -> Orientation:
+        # PyAV's stubs give the mapping of side data the type of one of its values.
+        sides = cast("SideDataContainer", frame.side_data)
+        matrix = sides.get(SideDataType.DISPLAYMATRIX)
         return Orientation.from_display_matrix(bytes(matrix)) if matrix is not None else Orientation()
 
     def missing_at_end_s(self) -> Fraction:
@@ -262,7 +269,7 @@ class VideoReader:
         return self._video_end
 
 
-def _starts_again(packet: Any, before: Any) -> bool:
+def _starts_again(packet: Packet[VideoStream], before: Packet[VideoStream]) -> bool:
     return packet.dts is not None and before.dts is not None and packet.dts < before.dts
 
 

@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Generic, Protocol, SupportsBytes, TypeVar
 
 REORDERING = 34
 """Packets after which a frame that did not come out is lost: a decoder holds 16 frames back at most (H.264 annex A,
@@ -44,7 +44,46 @@ class Loss:
     """Left out, those that only refer to a broken one included."""
 
 
-def shows_picture(codec: str, packet: Any) -> bool:
+class Packet(SupportsBytes, Protocol):
+    """What is asked of a packet; PyAV's has it."""
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+
+    @property
+    def is_discard(self) -> bool:
+        """Whether an edit list cuts it away."""
+
+
+class Frame(Protocol):
+    """What is asked of a decoded frame; PyAV's has it."""
+
+    @property
+    def opaque(self) -> object:
+        """Number of its packet, None where the decoder lost it."""
+
+    @property
+    def pts(self) -> int | None:
+        """Presentation time."""
+
+    @property
+    def key_frame(self) -> bool:
+        """Whether it refers to no other frame."""
+
+    @property
+    def is_corrupt(self) -> bool:
+        """Whether the decoder concealed an error in it."""
+
+    @property
+    def interlaced_frame(self) -> bool:
+        """Whether it was made of two fields."""
+
+
+AnyFrame = TypeVar("AnyFrame", bound=Frame)
+
+
+def shows_picture(codec: str, packet: Packet) -> bool:
     """Whether a decoder is to give a picture for a packet: not for parts cut away by an edit list, for frames that
     others refer to but nobody sees (VP8: RFC 6386, 9.1; VP9: bitstream specification, 6.2), nor for skipped ones."""
     if packet.is_discard:
@@ -62,7 +101,7 @@ def shows_picture(codec: str, packet: Any) -> bool:
     return several or bool(bits & 0x80) or bool(bits & 0x20)
 
 
-class SoundFrames:
+class SoundFrames(Generic[AnyFrame]):
     """Takes the packets sent and the frames that come out; hands on the sound frames in the order shown.
 
     Frames are held only while a packet that was decoded before theirs is still in the decoder: at most `REORDERING`,
@@ -73,7 +112,7 @@ class SoundFrames:
         self.losses: list[Loss] = []
         self._pending: dict[int, Sent] = {}
         """Sent and not out yet, in the order of decoding."""
-        self._held: deque[tuple[int, Any]] = deque()
+        self._held: deque[tuple[int, AnyFrame]] = deque()
         self._broken: list[int] = []
         """Broken packets that no sound keyframe has come after."""
         self._first: Sent | None = None
@@ -93,9 +132,9 @@ class SoundFrames:
         self.ended()
         self._break(packet, "a packet does not decode")
 
-    def came(self, frame: Any, duration: Fraction) -> None:
+    def came(self, frame: AnyFrame, duration: Fraction) -> None:
         """A frame came out; `duration` is what a frame of this stream lasts, in units of pts."""
-        number = next(iter(self._pending), 0) if frame.opaque is None else int(frame.opaque)
+        number = frame.opaque if isinstance(frame.opaque, int) else next(iter(self._pending), 0)
         packet = self._pending.pop(number, Sent(number, frame.pts))
         if frame.interlaced_frame:
             self._drop_second_field(packet, duration)
@@ -110,7 +149,7 @@ class SoundFrames:
         """The decoder is empty: nothing more comes out."""
         self._miss(list(self._pending))
 
-    def sound(self) -> Iterator[Any]:
+    def sound(self) -> Iterator[AnyFrame]:
         """The frames of which it is known by now that they are sound."""
         while self._held:
             number, frame = self._held[0]
@@ -130,7 +169,7 @@ class SoundFrames:
                     self.losses[-1].after = self._shown
                 yield frame
 
-    def _overdue(self, number: int, frame: Any) -> list[int]:
+    def _overdue(self, number: int, frame: AnyFrame) -> list[int]:
         """Packets whose frame can no longer come after this one."""
         newest = max(number, next(reversed(self._pending), number))
         return [

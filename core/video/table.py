@@ -49,7 +49,7 @@ class VideoInfo:
     declared_rate: Fraction | None = None
     """Frames per second as the file's header says, what OpenCV's ``CAP_PROP_FPS`` gives; None when it says nothing."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """The form of `video.json`; rationals as ``num/den``."""
         row = dict(self.__dict__)
         for name in ("average_rate", "time_base"):
@@ -61,7 +61,7 @@ class VideoInfo:
 
     @classmethod
     def from_dict(cls, row: dict[str, Any]) -> VideoInfo:
-        """Rebuild from `to_dict`."""
+        """Rebuild from what `to_dict` gave, as read from `video.json`."""
         row = dict(row)
         for name in ("average_rate", "time_base"):
             row[name] = Fraction(row[name])

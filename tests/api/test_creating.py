@@ -31,7 +31,8 @@ def post(
 ) -> httpx.Response:
     files: dict[str, Any] = {"video": ("../../evil.mp4", video, "application/octet-stream")}
     files.update({name: (None, value) for name, value in fields.items()})
-    return client.post("/v1/inspections", files=files, headers=headers)
+    answer: httpx.Response = client.post("/v1/inspections", files=files, headers=headers)
+    return answer
 
 
 def leftovers(backend: Backend) -> list[str]:
@@ -171,7 +172,7 @@ def test_wrong_parameters_are_named(
 def test_files_that_no_run_can_use_are_refused(
     backend: Backend, client: TestClient, video: bytes, annotations: bytes | None, code: str
 ) -> None:
-    fields = {} if annotations is None else {"annotations": annotations}
+    fields: dict[str, Any] = {} if annotations is None else {"annotations": annotations}
     answer = post(client, video, **fields)
     assert (answer.status_code, answer.json()["code"]) == (422, code)
     assert (rows(backend), leftovers(backend)) == ([], [])

@@ -173,10 +173,10 @@ def test_a_form_promises_its_length_while_it_comes_in(small_disk: Backend, serve
 def test_a_form_without_a_length_promises_what_comes(small_disk: Backend) -> None:
     body = b'--b\r\nContent-Disposition: form-data; name="video"; filename="v"\r\n\r\nx\r\n--b--\r\n'
     chunks = {"content": iter([body]), "headers": {"Content-Type": "multipart/form-data; boundary=b"}}
-    assert client_of(small_disk).post("/v1/inspections", **chunks).status_code == 202  # type: ignore[arg-type]
+    assert client_of(small_disk).post("/v1/inspections", **chunks).status_code == 202
     full = client_of(small_disk.with_settings(reserve_bytes=15 * GIB - 10))
     chunks["content"] = iter([body])
-    answer = full.post("/v1/inspections", **chunks)  # type: ignore[arg-type]
+    answer = full.post("/v1/inspections", **chunks)
     assert (answer.status_code, answer.json()["code"]) == (507, "disk_full")
     assert (_reserved(small_disk), leftovers(small_disk)) == (0, [])
 

@@ -120,7 +120,7 @@ def test_csv_runs_nothing_in_a_spreadsheet_and_json_holds_the_exact_text(backend
     keys = json.loads(LABELS.read_bytes()).values()
     labels = sorted({entry["label"] for key in keys for entry in key.get("detections", [])})
     event, defect = ROWS["events"][0], ROWS["defects"][0]
-    rows = {
+    rows: dict[str, Any] = {
         "detections": [detection(k, label=label, key="+0.5", x=-3.5) for k, label in enumerate(labels)],
         "events": [{**event, "event_id": k, "label": label} for k, label in enumerate(labels)],
         "defects": [

@@ -24,7 +24,7 @@ HIDDEN = [
 
 def routes(client: TestClient) -> list[tuple[str, str, list[str]]]:
     """Method, path and names of the query parameters of every route, those outside the document too."""
-    found = [(method, path, []) for method, path in HIDDEN]
+    found: list[tuple[str, str, list[str]]] = [(method, path, []) for method, path in HIDDEN]
     for path, methods in client.get("/openapi.json").json()["paths"].items():
         for method, operation in methods.items():
             names = [one["name"] for one in operation.get("parameters", ()) if one["in"] == "query"]

@@ -188,7 +188,7 @@ def test_a_stock_client_uploads_and_goes_on_after_a_cut(backend: Backend, addres
     source = tmp_path / "video.mp4"
     source.write_bytes(os.urandom(2_500_000))
     uploader = TusClient(f"{address}/v1/uploads").uploader(str(source), chunk_size=1_000_000)
-    uploader.upload_chunk()
+    uploader.upload_chunk()  # type: ignore[no-untyped-call]  # of a library
     again = TusClient(f"{address}/v1/uploads").uploader(str(source), chunk_size=1_000_000, url=uploader.url)
     assert again.offset == 1_000_000
     again.upload()

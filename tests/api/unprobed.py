@@ -16,5 +16,5 @@ async def _check(*_: Any) -> None:
 
 def create_app() -> FastAPI:
     """For `uvicorn --factory`."""
-    Prober.check = _check  # type: ignore[method-assign]
+    Prober.check = _check  # type: ignore[method-assign,assignment]
     return app.create_app()

@@ -1,24 +1,33 @@
 """A small synthetic truth and the perfect result for it, in another world frame."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts when a PNG is written)
 import numpy as np
 import pycolmap
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from core.surface.ply import Mesh, write_cloud, write_mesh
+
+Row = dict[str, Any]
+F64 = NDArray[np.float64]
 
 N_FRAMES = 10
 SCALE, ROTATION, SHIFT = 0.02, Rotation.from_euler("xyz", [20, -35, 50], degrees=True), np.array([0.3, -0.1, 0.2])
 
 
-def to_model(points_m):
+def to_model(points_m: F64) -> F64:
     """Truth (metres) to the synthetic result's frame; the inverse of x = SCALE R x_model + SHIFT."""
     return ROTATION.inv().apply((points_m - SHIFT) / SCALE)
 
 
-def plate():
+def plate() -> tuple[F64, NDArray[np.int32]]:
     x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(-0.03, 0.03, 31), np.linspace(-0.03, 0.03, 31)))
     vertices = np.stack([x, y, 0.002 * np.sin(150 * x) * np.cos(120 * y)], axis=1)
     corner = (np.arange(30)[:, None] * 31 + np.arange(30)).ravel()
@@ -28,7 +37,7 @@ def plate():
     return vertices, faces.astype(np.int32)
 
 
-def camera_poses():
+def camera_poses() -> F64:
     poses = np.tile(np.eye(4), (N_FRAMES, 1, 1))
     for i in range(N_FRAMES):
         poses[i, :3, :3] = Rotation.from_euler("xy", [180 + 3 * (i % 3), 4 * i - 20], degrees=True).as_matrix()
@@ -36,7 +45,7 @@ def camera_poses():
     return poses
 
 
-def defects():
+def defects() -> list[Row]:
     vertices, _ = plate()
     rows = []
     for number, place in enumerate(([0.01, 0.01], [-0.01, -0.012], [0.025, -0.025])):
@@ -49,7 +58,7 @@ def defects():
 BOXES = {0: [400.0, 300.0, 460.0, 360.0], 1: [500.0, 380.0, 560.0, 440.0]}
 
 
-def write_truth(folder):
+def write_truth(folder: Path) -> Path:
     cameras = {
         "camera": {"width": 960, "height": 720, "F": 520.0, "K3": -3e-10},
         "roi": [0.04, 0.11, 0.86, 0.84],
@@ -64,14 +73,21 @@ def write_truth(folder):
     return folder
 
 
-def detection(frame, box, xyz_m, **changes):
+def detection(frame: int, box: ArrayLike, xyz_m: ArrayLike | None, **changes: object) -> Row:
     x1, y1, x2, y2 = np.asarray(box) / [960, 720, 960, 720]
     place = dict(zip("xyz", (None,) * 3 if xyz_m is None else to_model(np.array(xyz_m)).tolist(), strict=True))
     row = {"time_s": round(frame / 12, 4), "box_x1": x1, "box_y1": y1, "box_x2": x2, "box_y2": y2, **place}
     return {**row, "outcome": "mapped", "rung": "surface", "confidence": None, "defect_id": None, "model": 0, **changes}
 
 
-def write_result(folder, poses=None, frames=range(N_FRAMES), points=None, detections=(), defects=()):
+def write_result(
+    folder: Path,
+    poses: F64 | None = None,
+    frames: Sequence[int] = range(N_FRAMES),
+    points: F64 | None = None,
+    detections: Sequence[Row] = (),
+    defects: Sequence[Row] = (),
+) -> Path:
     poses, (vertices, faces) = camera_poses() if poses is None else poses, plate()
     rows = [f"{i},{source},0,0,x,sampled,1,0" for i, source in enumerate(frames)]
     (folder / "frames.csv").write_text("\n".join(["index,source_index,pts,time_s,sha256,role,registered,model", *rows]))
@@ -87,7 +103,7 @@ def write_result(folder, poses=None, frames=range(N_FRAMES), points=None, detect
     return folder
 
 
-def sparse_model(poses):
+def sparse_model(poses: F64) -> pycolmap.Reconstruction:
     model = pycolmap.Reconstruction()
     camera = pycolmap.Camera(
         model="OPENCV_FISHEYE", width=787, height=525, params=[520, 520, 442, 281, 0, 0, 0, 0], camera_id=1

@@ -56,7 +56,7 @@ def test_truth_agrees_with_the_picture(made: Path) -> None:
         pick = slice(None, None, 50)
         points = frame.point[rows, columns][pick]
         in_cam = (points - truth.centers[i]) @ truth.rotations[i]
-        rays = truth.lens.rays(columns[pick] + 0.5, rows[pick] + 0.5)
+        rays = truth.lens.rays(columns[pick].astype(np.float64) + 0.5, rows[pick].astype(np.float64) + 0.5)
         assert in_cam / np.linalg.norm(in_cam, axis=1, keepdims=True) == pytest.approx(rays, abs=1e-5)
         for box in truth.boxes[i]:
             x1, y1, x2, y2 = box.box_px.astype(int)

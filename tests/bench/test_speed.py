@@ -8,6 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from bench.main import main
 from bench.speed import dense, disk, mapping, stages
@@ -90,7 +91,7 @@ def plane_scene(folder: Path) -> DenseScene:
     rng = np.random.default_rng(1)
     texture = cv2.resize(rng.integers(0, 255, (200, 200), np.uint8), (1600, 1600), interpolation=cv2.INTER_CUBIC)
     (folder / "images").mkdir()
-    turn, _ = cv2.Rodrigues(np.array([0.02, -0.03, 0.05]))
+    turn = np.asarray(cv2.Rodrigues(np.array([0.02, -0.03, 0.05]))[0], np.float64)
     poses = {
         "a": Pose(np.eye(3), np.zeros(3)),
         "b": Pose(turn, turn @ np.array([-0.4, 0.0, 0.0])),
@@ -121,16 +122,16 @@ def test_semi_global_matching_finds_a_plane(tmp_path: Path, sources: tuple[str, 
     assert dense.judge(scene, view, depth)[0] > 0.75
 
 
-def true_depth() -> np.ndarray:
+def true_depth() -> NDArray[np.float32]:
     _, u = np.mgrid[0:240, 0:320] + 0.5
-    return (5 / (1 - 0.2 * (u - 160) / 300)).astype(np.float32)
+    return np.asarray(5 / (1 - 0.2 * (u - 160) / 300), np.float32)
 
 
 def test_judging_depth(tmp_path: Path) -> None:
     scene = plane_scene(tmp_path)
     true = true_depth()
     assert dense.judge(scene, scene.views[0], true) == (1.0, 0.0)
-    assert dense.judge(scene, scene.views[0], true * 1.02) == (0.0, 1.0)
+    assert dense.judge(scene, scene.views[0], true * np.float32(1.02)) == (0.0, 1.0)
     half = true.copy()
     half[120:] = 0
     near, far = dense.judge(scene, scene.views[0], half)

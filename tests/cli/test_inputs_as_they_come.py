@@ -38,7 +38,9 @@ def as_json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
         ("d_x264g12_rand.mp4", 44, 4.0, ["damaged: 4 frames lost after frame 18 at 1.500 s"]),
     ],
 )
-def test_probe_says_what_the_film_is_and_what_is_odd(video, frames, seconds, notes, capsys):
+def test_probe_says_what_the_film_is_and_what_is_odd(
+    video: str, frames: int, seconds: float, notes: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
     found = as_json(capsys, "probe", video)
     assert (found["n_frames"], found["duration_s"], found["average_rate"]) == (frames, seconds, "12/1")
     assert (found["width"], found["height"]) == (480, 360)
@@ -47,11 +49,11 @@ def test_probe_says_what_the_film_is_and_what_is_odd(video, frames, seconds, not
     assert all(note in text for note in notes)
 
 
-def test_probe_refuses_large_pictures_by_their_header(capsys):
+def test_probe_refuses_large_pictures_by_their_header(capsys: pytest.CaptureFixture[str]) -> None:
     assert "8192x8192 = 67,108,864 pixels; at most 40,000,000 are read" in said(capsys, "probe", "big180.mp4", expect=2)
 
 
-def test_probe_reads_another_stream_when_told(capsys):
+def test_probe_reads_another_stream_when_told(capsys: pytest.CaptureFixture[str]) -> None:
     assert "160x120, mjpeg, 4 frames" in said(capsys, "probe", "twov.mp4", "--stream", "0")
     assert "has no video stream 7" in said(capsys, "probe", "twov.mp4", "--stream", "7", expect=2)
 
@@ -65,14 +67,16 @@ def test_probe_reads_another_stream_when_told(capsys):
         ("nulldet.json", "d_x265_rand.mp4", "video: damaged: 4 frames lost after frame 18"),
     ],
 )
-def test_check_says_what_is_odd_of_the_video_too(annotations, video, note, capsys):
+def test_check_says_what_is_odd_of_the_video_too(
+    annotations: str, video: str, note: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert note in said(capsys, "check", annotations, video)
     found = as_json(capsys, "check", annotations, video)["video"]
     assert found["joined"] == ([48] if video == "concat_disc.ts" else [])
     assert bool(found["damage"]) == video.startswith("d_")
 
 
-def test_check_finds_every_key_of_a_joined_recording(capsys):
+def test_check_finds_every_key_of_a_joined_recording(capsys: pytest.CaptureFixture[str]) -> None:
     found = as_json(capsys, "check", "k96.json", "concat_disc.ts")
     assert (found["n_keys"], found["n_keys_outside_video"]) == (96, 0)
     read = found["time_convention"]
@@ -80,7 +84,7 @@ def test_check_finds_every_key_of_a_joined_recording(capsys):
     assert (read["last"]["source_index"], read["last"]["key"]) == (95, "7.916667")
 
 
-def test_check_takes_the_stream_that_a_run_would_take(capsys, tmp_path: Path):
+def test_check_takes_the_stream_that_a_run_would_take(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text('{"0.0": {}, "1.0": {}}', encoding="utf-8")
     told = as_json(capsys, "check", str(tmp_path / "a.json"), "twov.mp4", "--set", "input.video_stream=0")
     assert (told["video"]["n_frames"], told["time_convention"]["frames_hit"]) == (4, 2)

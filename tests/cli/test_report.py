@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from cli import report
+from core.states import RunState
 from worker.events import Outcome
 
 
@@ -22,7 +23,7 @@ def test_report_says_what_was_made(tmp_path: Path) -> None:
         "funnel": {"detections": 90, "frame_found": 88, "surface_hit": None, "mapped": 70, "approximate": 5},
     }
     (tmp_path / "quality.json").write_text(json.dumps(quality))
-    text = "\n".join(report.lines(Outcome("succeeded", tmp_path, 75.0, 12, 3)))
+    text = "\n".join(report.lines(Outcome(RunState.SUCCEEDED, tmp_path, 75.0, 12, 3)))
     assert "succeeded in 1 min 15 s (12 tasks computed, 3 already there)" in text
     assert "mean reprojection error px  0.8123" in text
     assert "12,345" in text
@@ -36,4 +37,4 @@ def test_report_says_what_was_made(tmp_path: Path) -> None:
 
 
 def test_report_of_a_run_that_made_nothing(tmp_path: Path) -> None:
-    assert report.lines(Outcome("failed", tmp_path, 1.0, 1, 0))[1].startswith("failed in 1.0 s")
+    assert report.lines(Outcome(RunState.FAILED, tmp_path, 1.0, 1, 0))[1].startswith("failed in 1.0 s")

@@ -20,7 +20,7 @@ def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] |
     rng = np.random.default_rng(0)
     wide = SIZE[0] + int(step_px * max(times)) + 8
     wall = np.kron(rng.integers(0, 256, (SIZE[1] // 5 + 1, wide // 5 + 1, 3)), np.ones((5, 5, 1))).astype(np.uint8)
-    wall = cv2.GaussianBlur(wall, (5, 5), 1.2)
+    wall = np.asarray(cv2.GaussianBlur(wall, (5, 5), 1.2), np.uint8)
     (folder / "images").mkdir(parents=True)
     rows = []
     for index, (role, time) in enumerate(zip(roles, times, strict=True)):

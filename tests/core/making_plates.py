@@ -12,6 +12,7 @@ from pathlib import Path
 import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
 import pycolmap
+from numpy.typing import NDArray
 
 from core.mapping.consensus import looked_at
 from core.mapping.depth_witness import DepthMaps, no_depth_maps
@@ -80,7 +81,8 @@ def scene(
     for one in detections:
         if one.source_index in boxes:
             boxes[one.source_index].append((in_crop(one), one.label))
-    observations, positions = {}, {}
+    observations: dict[int, Observations] = {}
+    positions: dict[int, NDArray[np.float64]] = {}
     for frame, (xy, points) in (sparse or {}).items():
         ids = np.arange(len(points)) + 1000 * frame
         observations[frame] = Observations(xy, ids)

@@ -7,6 +7,7 @@ from typing import Any
 
 from core.report.record import RunRecord, RunTables, TaskRecord
 from core.settings import make_settings
+from core.states import RunState, TaskState
 from core.timeline.clusters import cluster_detections
 from core.timeline.events import event_rows, with_defect_ids
 from tests.core.making_rows import mapped, unplaced
@@ -30,7 +31,7 @@ def case(name: str, images: int, points: int, seconds: float = 2.0) -> TaskRecor
         "median_reprojection_error_px": 1.1 if images else None,
         "start_mode": "scratch",
     }
-    return TaskRecord(f"{kind}/{name}", "succeeded", seconds=seconds, peak_rss_bytes=1000 * images, facts=facts)
+    return TaskRecord(f"{kind}/{name}", TaskState.SUCCEEDED, seconds=seconds, peak_rss_bytes=1000 * images, facts=facts)
 
 
 CASES = [
@@ -93,7 +94,7 @@ def full_record(preset: str = "default", **options: Any) -> RunRecord:
     """A run that came to its end."""
 
     def task(key: str, **facts: Any) -> TaskRecord:
-        return TaskRecord(key, "succeeded", seconds=1.5, peak_rss_bytes=10, facts=facts)
+        return TaskRecord(key, TaskState.SUCCEEDED, seconds=1.5, peak_rss_bytes=10, facts=facts)
 
     tasks = [
         task("probe", n_frames=360),
@@ -121,7 +122,7 @@ def full_record(preset: str = "default", **options: Any) -> RunRecord:
     ]
     return RunRecord(
         settings=make_settings(preset, options),
-        state="succeeded",
+        state=RunState.SUCCEEDED,
         tasks=tasks,
         tables=_tables(),
         inputs={"video": "aa", "annotations": "bb"},
@@ -146,12 +147,14 @@ def failed_record(preset: str = "default") -> RunRecord:
     for task in full.tasks[:6]:
         tasks.append(replace(task, facts={**task.facts, "flags": [flag]}) if task.key == "graph" else task)
     tasks.append(case("seg_000_0000_0030", 0, 0))
-    tasks.append(TaskRecord("coarse/seg_001_0020_0050", "failed", reason="stage_failed", message="crashed"))
-    tasks.append(TaskRecord("reduce_coarse", "failed", reason="no_reconstruction", message="no case has a model"))
+    tasks.append(TaskRecord("coarse/seg_001_0020_0050", TaskState.FAILED, reason="stage_failed", message="crashed"))
+    tasks.append(
+        TaskRecord("reduce_coarse", TaskState.FAILED, reason="no_reconstruction", message="no case has a model")
+    )
     tables = replace(full.tables, registered=[], mapped_rows=None, timeline=[], defects=[])
     return replace(
         full,
-        state="failed",
+        state=RunState.FAILED,
         tasks=tasks,
         tables=tables,
         failed_stage="reduce_coarse",

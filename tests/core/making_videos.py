@@ -34,6 +34,7 @@ def make_video(
     """Encode one `picture` per time; the container comes from the suffix."""
     with av.open(str(path), "w", options=options or {}) as container:
         stream = container.add_stream(codec, rate=25)
+        assert isinstance(stream, av.VideoStream)
         stream.width, stream.height = size
         stream.pix_fmt = "yuv420p"
         stream.codec_context.time_base = MILLISECOND

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pycolmap
 
-from core.verification import camera_from_dict
+from core.verification import CameraFields, camera_from_dict
 
-CAMERA_VALUES = {
+CAMERA_VALUES: CameraFields = {
     "model": "OPENCV_FISHEYE",
     "width": 640,
     "height": 480,
@@ -17,7 +17,7 @@ CAMERA_VALUES = {
 }
 
 
-def fisheye() -> Any:
+def fisheye() -> pycolmap.Camera:
     return camera_from_dict(CAMERA_VALUES)
 
 

@@ -82,7 +82,7 @@ VIDEOS: list[tuple[str, Callable[[Path, Path], Path], str, str]] = [
 
 
 @pytest.mark.parametrize(("make", "code", "cause"), [row[1:] for row in VIDEOS], ids=[row[0] for row in VIDEOS])
-def test_bad_video(tmp_path: Path, good_video: Path, make: Callable[[Path, Path], Path], code: str, cause: str):
+def test_bad_video(tmp_path: Path, good_video: Path, make: Callable[[Path, Path], Path], code: str, cause: str) -> None:
     with pytest.raises(BadInput, match=cause) as caught:
         run_stages(tmp_path, make(tmp_path, good_video), None, {})
     assert caught.value.code == code
@@ -101,7 +101,7 @@ OPTIONS: list[tuple[str, dict[str, Any], str, str]] = [
 
 
 @pytest.mark.parametrize(("options", "code", "cause"), [row[1:] for row in OPTIONS], ids=[row[0] for row in OPTIONS])
-def test_bad_parameters(tmp_path: Path, good_video: Path, options: dict[str, Any], code: str, cause: str):
+def test_bad_parameters(tmp_path: Path, good_video: Path, options: dict[str, Any], code: str, cause: str) -> None:
     with pytest.raises(BadInput, match=cause) as caught:
         run_stages(tmp_path, good_video, None, options)
     assert caught.value.code == code
@@ -155,7 +155,7 @@ ANNOTATIONS = [
 
 
 @pytest.mark.parametrize("bad", ANNOTATIONS, ids=[bad.name for bad in ANNOTATIONS])
-def test_bad_annotations(tmp_path: Path, good_video: Path, bad: BadAnnotation):
+def test_bad_annotations(tmp_path: Path, good_video: Path, bad: BadAnnotation) -> None:
     path = tmp_path / "a.json"
     path.write_bytes(bad.data)
     with pytest.raises(BadInput, match=bad.cause) as caught:
@@ -164,7 +164,7 @@ def test_bad_annotations(tmp_path: Path, good_video: Path, bad: BadAnnotation):
     assert caught.value.where
 
 
-def test_100_mb_of_annotations_are_refused(tmp_path: Path, good_video: Path):
+def test_100_mb_of_annotations_are_refused(tmp_path: Path, good_video: Path) -> None:
     path = tmp_path / "huge.json"
     with path.open("wb") as stream:
         stream.truncate(100_000_000)
@@ -173,7 +173,7 @@ def test_100_mb_of_annotations_are_refused(tmp_path: Path, good_video: Path):
     assert caught.value.code == "annotations_too_large"
 
 
-def test_good_input_next_to_the_bad(tmp_path: Path, good_video: Path):
+def test_good_input_next_to_the_bad(tmp_path: Path, good_video: Path) -> None:
     path = tmp_path / "a.json"
     path.write_bytes(at("1.2"))
     facts = run_stages(tmp_path, good_video, path, {"frames.count": 10})
@@ -189,7 +189,7 @@ def test_good_input_next_to_the_bad(tmp_path: Path, good_video: Path):
     assert all(table[1 + f["source_index"]].endswith(f["sha256"]) for f in frames)
 
 
-def test_the_decodable_part_is_used_on_request(tmp_path: Path):
+def test_the_decodable_part_is_used_on_request(tmp_path: Path) -> None:
     whole = make_video(tmp_path / "all.mp4", every_ms(40, 50), options={"movflags": "faststart"})
     cut = cut_to(whole, 0.6, tmp_path / "cut.mp4")
     facts = run_stages(tmp_path, cut, None, {"input.allow_truncated": True})

@@ -12,15 +12,15 @@ import pytest
 from core.errors import StageFailed
 from core.graph import STAGES, expand
 from core.settings import make_settings
-from core.stage import StageTask
+from core.stage import Facts, StageTask
 from core.task_key import stage_of
 
-FRAMES = {"frames": {"n_frames": 200, "n_search": 200}}
-SEARCHED = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
-DENSE = {**SEARCHED, "undistort": {"n_views": 90}}
+FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
+SEARCHED: dict[str, Facts] = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
+DENSE: dict[str, Facts] = {**SEARCHED, "undistort": {"n_views": 90}}
 
 
-def keys(facts: Mapping[str, Any], preset: str = "default", **options: Any) -> list[str]:
+def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, Any] | None = None) -> list[str]:
     tasks = expand(make_settings(preset, options), facts)
     names = [task.key for task in tasks]
     assert len(set(names)) == len(names)
@@ -39,14 +39,14 @@ def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: s
 
 
 def test_the_plan_only_grows() -> None:
-    known = [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
+    known: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
     for before, after in pairwise(known):
         assert set(keys(before)) <= set(keys(after))
 
 
 def test_the_gallery_waits_until_the_further_models_are_known() -> None:
     assert "gallery" not in keys(DENSE)
-    assert "gallery" in keys(DENSE, **{"model.further": 0})
+    assert "gallery" in keys(DENSE, "default", {"model.further": 0})
     assert "gallery" in keys({**DENSE, "pieces": {"n_pieces": 0}})
     tasks = {task.key: task for task in expand(make_settings(), {**DENSE, "pieces": {"n_pieces": 2}})}
     assert {"timeline", "timeline@1", "timeline@2"} <= set(tasks["gallery"].depends)

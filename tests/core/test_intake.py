@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from core.intake import answer
+from core.intake import LimitFields, answer
 from core.video.decode import DecodedFrame, VideoReader
 
 ROOT = Path(__file__).parents[2]
@@ -38,7 +38,8 @@ def test_a_sound_input_is_described() -> None:
     ],
 )
 def test_what_is_wrong_is_named(change: dict[str, Any], code: str) -> None:
-    found = answer({"video": str(VIDEO), "annotations": None, "roi": FULL, **change})
+    question: Any = {"video": str(VIDEO), "annotations": None, "roi": FULL, **change}
+    found = answer(question)
     assert found["error"]["code"] == code
 
 
@@ -55,7 +56,7 @@ BIG = ROOT / "tests" / "data" / "inputs" / "big180.mp4"
     ],
 )
 def test_a_header_beyond_a_limit_is_enough(
-    video: Path, limits: dict[str, float], code: str, monkeypatch: pytest.MonkeyPatch
+    video: Path, limits: LimitFields, code: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def decode(_: VideoReader) -> None:
         pytest.fail("a frame was decoded")
@@ -63,11 +64,12 @@ def test_a_header_beyond_a_limit_is_enough(
     monkeypatch.setattr(VideoReader, "frames", decode)
     found = answer({"video": str(video), "annotations": None, "roi": FULL, "limits": limits})
     assert found["error"]["code"] == code
-    assert "at most" in found["error"]["message"] or "more than" in found["error"]["message"]
+    message = str(found["error"]["message"])
+    assert "at most" in message or "more than" in message
 
 
 def test_a_video_at_its_limits_is_taken() -> None:
-    limits = {"max_frame_pixels": 960 * 720, "max_video_frames": 96, "max_video_seconds": 8.0}
+    limits: LimitFields = {"max_frame_pixels": 960 * 720, "max_video_frames": 96, "max_video_seconds": 8.0}
     found = answer({"video": str(VIDEO), "annotations": None, "roi": FULL, "limits": limits})
     assert found["video"]["declared_frames"] == 96
 

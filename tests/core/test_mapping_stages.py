@@ -234,6 +234,7 @@ def test_the_gallery_has_its_pictures(inputs: Path, done: tuple[Path, dict[str, 
     assert all(f'href="{name}"' in html for name in pictures), "every picture is shown or linked"
     for name in ("mesh_1.png", "mesh_2.png"):
         picture = cv2.imread(str(folder / name))
+        assert picture is not None
         assert picture.shape == (120, 160, 3)
         blue, green, red = (picture[..., i].astype(int) for i in range(3))
         assert ((red > 130) & (green < 90) & (blue < 90)).sum() > 20, "red spots are seen"

@@ -165,13 +165,13 @@ def _options_read(module: str) -> frozenset[str]:
         if len(chain) < 2:
             continue
         *base, option = chain
-        held = set(groups.get(tuple(base), set()))
+        known = set(groups.get(tuple(base), set()))
         if _group_of_chain(base):
-            held.add(str(_group_of_chain(base)))
+            known.add(str(_group_of_chain(base)))
         # `case.settings.search_tracks`, where the class of `case` holds `settings: MapperSettings`.
         if base[-1] == "settings":
-            held |= {group for name, found in groups.items() if name[-1] == "settings" for group in found}
+            known |= {group for name, found in groups.items() if name[-1] == "settings" for group in found}
             if option in Settings.model_fields and option not in GROUPS:
                 read.add(option)
-        read |= {f"{group}.{option}" for group in held if option in GROUPS[group].model_fields}
+        read |= {f"{group}.{option}" for group in known if option in GROUPS[group].model_fields}
     return frozenset(read)

@@ -10,7 +10,7 @@ import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
 import pytest
 
-from core.flags import Flag
+from core.flags import Flag, Severity
 from core.mapping.store import read_observations
 from core.settings import make_settings
 from core.stage import Facts, StageTask
@@ -58,7 +58,7 @@ def _write(path: Path, value: object) -> None:
 def run_both(inputs: Path, out: Path, codes: tuple[str, ...] = ()) -> dict[str, Facts]:
     """With warnings of the checks of the model."""
     folders = {path.name: path for path in inputs.iterdir()}
-    facts: dict[str, Facts] = {"extend": {"checks": [Flag(code, "warning").to_dict() for code in codes]}}
+    facts: dict[str, Facts] = {"extend": {"checks": [Flag(code, Severity.WARNING).to_dict() for code in codes]}}
     for name, stage in (("map_defects", map_defects), ("timeline", timeline)):
         folders[name] = out / name
         folders[name].mkdir(parents=True)

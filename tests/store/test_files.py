@@ -19,8 +19,8 @@ def store(request: pytest.FixtureRequest, tmp_path: Path) -> ArtifactStore:
     if request.param == "s3":
         address = request.getfixturevalue("s3")
         return ArtifactStore(f"{new_bucket(address)}/some/prefix", **options(address))
-    root = {"local": tmp_path / "st::ore ?#%", "memory": f"memory://{uuid.uuid4().hex}"}[request.param]
-    return ArtifactStore(root)
+    local, memory = tmp_path / "st::ore ?#%", f"memory://{uuid.uuid4().hex}"
+    return ArtifactStore(local if request.param == "local" else memory)
 
 
 @pytest.fixture

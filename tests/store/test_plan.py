@@ -309,7 +309,8 @@ def test_rows_are_written_with_the_task_that_made_them_and_come_along_when_reuse
     plan.complete(lease, result_for(lease, rows={"detections": [detection(0)]}))
     for _ in range(2):
         with plan.db.read() as session:
-            assert [(row.points3D, row.seconds) for row in session.scalars(select(CaseRow))] == [(50, 1.5)]
+            columns = CaseRow.__table__.c
+            assert session.execute(select(columns.points3D, columns.seconds)).all() == [(50, 1.5)]
             assert [row.name for row in session.scalars(select(MetricRow))] == ["part/0.points3D"]
             assert [(row.id, row.task_key) for row in session.scalars(select(DetectionRow))] == [(0, "part/1")]
         inspections(plan).reopen(ID, FILES, make_settings())

@@ -29,7 +29,7 @@ def failing(times: int, kind: type[Exception]) -> tuple[Callable[[], int], list[
     def call() -> int:
         calls.append(1)
         if len(calls) <= times:
-            raise kind("SELECT 1", None, Exception("away"))  # type: ignore[call-arg, arg-type]
+            raise kind("SELECT 1", None, Exception("away"))
         return 7
 
     return call, calls

@@ -16,6 +16,7 @@ import psutil
 import pytest
 from sqlalchemy import select
 
+from core.states import AttemptOutcome
 from store.db import open_sqlite
 from store.inspections import Inspections
 from store.models import Attempt
@@ -77,7 +78,9 @@ def test_killing_the_guard_or_the_stage_is_a_lost_worker_that_is_tried_again(pla
     runner = start(place)
     wait_for(lambda: len(pids(place, "start")) == 1)
     stage = psutil.Process(pids(place, "start")[0])
-    stage.parent().kill()
+    guard = stage.parent()
+    assert guard is not None
+    guard.kill()
     wait_for(lambda: len(pids(place, "start")) == 2)
     assert not alive(stage.pid)
     os.kill(pids(place, "start")[1], signal.SIGKILL)
@@ -106,7 +109,7 @@ def test_an_interrupted_run_stops_cleanly_and_goes_on_later(place: Workplace, nu
     assert "split" not in place.started()
 
 
-def outcomes(place: Workplace) -> list[tuple[str, str]]:
+def outcomes(place: Workplace) -> list[tuple[str, AttemptOutcome]]:
     database = open_sqlite(place.out / ".bladeatlas" / "plan.db")
     with database.read() as session:
         found = [(row.key, row.outcome) for row in session.scalars(select(Attempt).order_by(Attempt.id))]
@@ -177,4 +180,4 @@ def test_a_frozen_runner_whose_lease_went_to_another_is_refused(place: Workplace
     assert plan.release(lease)
     database.close()
     assert runner.wait(60) == 0
-    assert Counter(outcomes(place))[("split", "succeeded")] == 1
+    assert Counter(outcomes(place))[("split", AttemptOutcome.SUCCEEDED)] == 1

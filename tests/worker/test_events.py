@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from core.states import TaskState
 from store.records import TaskView
 from tests.worker.fake_stages import GRAPH
 from worker.events import Tracker
@@ -18,7 +19,7 @@ def view(key: str, state: str, seconds: float | None = None) -> TaskView:
         position=0,
         depends=(),
         optional=False,
-        state=state,
+        state=TaskState(state),
         attempt=1,
         fingerprint=None,
         seconds=seconds,

@@ -12,6 +12,7 @@ from sqlalchemy import select
 from core.outputs import TABLES
 from core.report.record import RunRecord
 from core.settings import make_settings
+from core.states import RunState
 from core.task_key import stage_of
 from store.db import Database, open_sqlite
 from store.inspections import Inspections
@@ -95,13 +96,13 @@ def test_what_is_no_longer_there_is_taken_away(hidden: Path) -> None:
 
 
 def test_the_confirmed_model_is_served_when_it_was_not_extended(hidden: Path) -> None:
-    record = replace(full_record(), state="partial", failed_stage="extend")
+    record = replace(full_record(), state=RunState.PARTIAL, failed_stage="extend")
     publish(record, results(hidden, "a", ["confirm"]), hidden.parent, hidden)
     assert (hidden.parent / "sparse/cameras.bin").read_text() == "a confirm model/cameras.bin"
 
 
 def test_a_refused_run_keeps_its_model_and_places_nothing(hidden: Path) -> None:
-    record = replace(full_record(), state="failed", reason="no_reconstruction")
+    record = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
     publish(record, results(hidden, "a", list(FILES_OF)), hidden.parent, hidden)
     found = published(hidden)
     assert "sparse/cameras.bin" in found

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.dense.patchmatch.jit import kernel
-from core.dense.patchmatch.kernels import forward_backward
+from core.dense.patchmatch.kernels import Sources, forward_backward
 
 f32 = np.float32
+F32 = NDArray[np.float32]
+U8 = NDArray[np.uint8]
 
 
 @kernel
-def count_consistent(planes, sources, cosines, max_error, out):  # type: ignore[no-untyped-def]
+def count_consistent(planes: F32, sources: Sources, cosines: F32, max_error: np.float32, out: U8) -> None:
     """Count, for every pixel with a plane, the sources that see the same place.
 
     A source agrees when its own depth leads back to within `max_error` px of the pixel and the two rays meet under

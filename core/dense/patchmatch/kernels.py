@@ -20,6 +20,9 @@ from core.dense.patchmatch.jit import inlined, kernel
 
 f32 = np.float32
 F32 = NDArray[np.float32]
+U8 = NDArray[np.uint8]
+Source = int | np.int64
+"""Number of a source view."""
 
 _SAMPLES = [(x, y) for y in range(-5, 6, 2) for x in range(-5, 6, 2) if abs(x) + abs(y) <= 6]
 TAPS = len(_SAMPLES)
@@ -99,7 +102,7 @@ def scratch(n_sources: int, best: int) -> Patch:
 
 
 @kernel
-def pack(grey, out):  # type: ignore[no-untyped-def]
+def pack(grey: U8, out: NDArray[np.uint32]) -> None:
     """Interleave a (h, w) uint8 image: out[y * w + x] holds the 2 x 2 block at (x, y), one byte each."""
     h, w = grey.shape
     for y in range(h):
@@ -112,7 +115,9 @@ def pack(grey, out):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def reference_patch(grey, guide, u, v, A, colour_weight, patch):  # type: ignore[no-untyped-def]
+def reference_patch(
+    grey: U8, guide: U8, u: int, v: int, A: F32, colour_weight: F32, patch: Patch
+) -> tuple[np.float32, np.float32]:
     """Fill `patch` for pixel (u, v) of the (h, w) uint8 reference; returns weighted mean and variance.
 
     `guide` is the (h, w) uint8 picture whose grey differences to the centre choose the bilateral weights from
@@ -140,7 +145,20 @@ def reference_patch(grey, guide, u, v, A, colour_weight, patch):  # type: ignore
 
 
 @inlined
-def patch_cost(packed, base, W, x, y, xu, yu, xv, yv, patch, mean, variance):  # type: ignore[no-untyped-def]
+def patch_cost(
+    packed: NDArray[np.uint32],
+    base: Source,
+    W: int,
+    x: np.float32,
+    y: np.float32,
+    xu: np.float32,
+    yu: np.float32,
+    xv: np.float32,
+    yv: np.float32,
+    patch: Patch,
+    mean: np.float32,
+    variance: np.float32,
+) -> np.float32:
     """1 - NCC of the reference patch and the source patch at (x, y) with Jacobian (xu, xv; yu, yv)."""
     weight, weighted = patch.weight, patch.weighted
     s1, s2, s12 = f32(0), f32(0), f32(0)
@@ -160,11 +178,25 @@ def patch_cost(packed, base, W, x, y, xu, yu, xv, yv, patch, mean, variance):  #
         s2 += weight[i] * value * value
         s12 += weighted[i] * value
     source_variance = max(s2 - s1 * s1, f32(0)) + NOISE_VARIANCE
-    return f32(1) - (s12 - s1 * mean) / np.sqrt(source_variance * (variance + NOISE_VARIANCE))
+    cost: np.float32 = f32(1) - (s12 - s1 * mean) / np.sqrt(source_variance * (variance + NOISE_VARIANCE))
+    return cost
 
 
 @inlined
-def view_cost(s, w, gu, gv, u, v, sources, W, H, patch, mean, variance):  # type: ignore[no-untyped-def]
+def view_cost(
+    s: Source,
+    w: np.float32,
+    gu: np.float32,
+    gv: np.float32,
+    u: np.float32,
+    v: np.float32,
+    sources: Sources,
+    W: int,
+    H: int,
+    patch: Patch,
+    mean: np.float32,
+    variance: np.float32,
+) -> np.float32:
     """Cost of a plane at pixel (u, v) in source s: 1 - NCC plus the weighted forward-backward error."""
     A, b, q = sources.A, sources.b, patch.q
     X, Y, Z = q[s, 0] + b[s, 0] * w, q[s, 1] + b[s, 1] * w, q[s, 2] + b[s, 2] * w
@@ -185,7 +217,9 @@ def view_cost(s, w, gu, gv, u, v, sources, W, H, patch, mean, variance):  # type
 
 
 @inlined
-def forward_backward(s, x, y, u, v, sources):  # type: ignore[no-untyped-def]
+def forward_backward(
+    s: Source, x: np.float32, y: np.float32, u: np.float32, v: np.float32, sources: Sources
+) -> np.float32:
     """Distance in px between (u, v) and the pixel seen from where source s sees its own surface at (x, y); capped."""
     inverse = sources.inverse_depth[s, np.int32(y + f32(0.5)), np.int32(x + f32(0.5))]
     if inverse <= f32(0):
@@ -201,7 +235,22 @@ def forward_backward(s, x, y, u, v, sources):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def plane_cost(w, gu, gv, u, v, sources, W, H, patch, mean, variance, first, second, limit):  # type: ignore[no-untyped-def]
+def plane_cost(
+    w: np.float32,
+    gu: np.float32,
+    gv: np.float32,
+    u: np.float32,
+    v: np.float32,
+    sources: Sources,
+    W: int,
+    H: int,
+    patch: Patch,
+    mean: np.float32,
+    variance: np.float32,
+    first: Source,
+    second: Source,
+    limit: np.float32,
+) -> np.float32:
     """Mean cost over the best sources, so that a highlight or an occlusion in one does not decide.
 
     `first` and `second` are the sources that match best so far at this pixel. They are tried at once; when
@@ -213,7 +262,7 @@ def plane_cost(w, gu, gv, u, v, sources, W, H, patch, mean, variance, first, sec
         patch.costs[i] = f32(1e9)
         patch.order[i] = 0
     for k in range(sources.A.shape[0]):
-        s = k
+        s: Source = k
         if k == 0:
             s = first
         elif k == 1:
@@ -234,7 +283,7 @@ def plane_cost(w, gu, gv, u, v, sources, W, H, patch, mean, variance, first, sec
 
 
 @inlined
-def _kth_other(k, first, second):  # type: ignore[no-untyped-def]
+def _kth_other(k: int, first: Source, second: Source) -> Source:
     """The source at place k >= 2 when `first` and `second` come first and the rest keep their order."""
     low, high = min(first, second), max(first, second)
     s = k - 2

@@ -6,11 +6,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from core.dense.cameras import Pinhole
 from core.dense.patchmatch.kernels import RADIUS, Patch, Sources, pack, scratch
@@ -103,7 +102,7 @@ def relate(
     return Sources(_f32(A), _f32(b), grey, _f32(maps), _f32(back), _f32(shift), np.float32(consistency))
 
 
-def _f32(values: Any) -> F32:
+def _f32(values: ArrayLike) -> F32:
     return np.ascontiguousarray(values, dtype=np.float32)
 
 
@@ -147,7 +146,7 @@ class Matcher:
         limits = np.array(self.limits, np.float32)
         weight, size = _colour_weight(), np.float32(step)
 
-        def work(colour: int, key: Any, y0: int, y1: int) -> None:
+        def work(colour: int, key: np.uint64, y0: int, y1: int) -> None:
             sweep_rows(
                 planes, pairs, self.grey, self.guide, self.mask, self.sources, self._scratch(), weight,
                 lens, limits, colour, key, size, draws, y0, y1,
@@ -175,11 +174,11 @@ class Matcher:
     def _scratch(self) -> Patch:
         return scratch(len(self.sources.A), min(self.best_views, len(self.sources.A)))
 
-    def _over_rows(self, work: Callable[[int, int], Any]) -> None:
+    def _over_rows(self, work: Callable[[int, int], object]) -> None:
         over_rows(work, self.grey.shape[0], self.threads)
 
 
-def over_rows(work: Callable[[int, int], Any], height: int, threads: int) -> None:
+def over_rows(work: Callable[[int, int], object], height: int, threads: int) -> None:
     """Call `work(y0, y1)` on blocks of rows, side by side when there are threads for it."""
     if threads <= 1:
         work(0, height)

@@ -17,7 +17,7 @@ F32 = NDArray[np.float32]
 
 
 @inlined
-def uniform(key, counter):  # type: ignore[no-untyped-def]
+def uniform(key: np.uint64, counter: np.uint64) -> np.float32:
     """Random float32 in [0, 1): splitmix64 of (key, counter); no state, so no order of evaluation."""
     z = np.uint64(key) + np.uint64(counter) * np.uint64(0x9E3779B97F4A7C15)
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
@@ -27,7 +27,9 @@ def uniform(key, counter):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def slant_ok(w, gu, gv, u, v, K, min_cosine):  # type: ignore[no-untyped-def]
+def slant_ok(
+    w: np.float32, gu: np.float32, gv: np.float32, u: np.float32, v: np.float32, K: F32, min_cosine: np.float32
+) -> bool:
     """Whether the plane is seen steeply enough: cosine of viewing ray and normal at least `min_cosine`.
 
     K holds f, cx, cy with whole-number pixel centres.
@@ -35,7 +37,8 @@ def slant_ok(w, gu, gv, u, v, K, min_cosine):  # type: ignore[no-untyped-def]
     f, x, y = K[0], (u - K[1]) / K[0], (v - K[2]) / K[0]
     a, b = gu * f, gv * f
     c = w - a * x - b * y
-    return w * w >= min_cosine * min_cosine * (a * a + b * b + c * c) * (x * x + y * y + np.float32(1.0))
+    ok: bool = w * w >= min_cosine * min_cosine * (a * a + b * b + c * c) * (x * x + y * y + np.float32(1.0))
+    return ok
 
 
 def to_normals(planes: F32, K: NDArray[np.float64]) -> F32:

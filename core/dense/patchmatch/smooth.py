@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.dense.patchmatch.jit import kernel
 
 f32 = np.float32
+F32 = NDArray[np.float32]
+Mask = NDArray[np.bool_]
 MIN_SAMPLES = 8
 """Fewer agreeing neighbours leave the pixel's plane as it is."""
 
 
 @kernel
-def fit_rows(planes, valid, radius, wide, narrow, out, y0, y1):  # type: ignore[no-untyped-def]
+def fit_rows(
+    planes: F32, valid: Mask, radius: int, wide: np.float32, narrow: np.float32, out: F32, y0: int, y1: int
+) -> None:
     """Fit a plane to the inverse depths around every valid pixel of rows [y0, y1).
 
     Two rounds of weighted least squares over the (2 radius + 1)^2 window: first over the neighbours within `wide` of

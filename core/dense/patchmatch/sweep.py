@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.dense.patchmatch.jit import inlined, kernel
 from core.dense.patchmatch.kernels import (
@@ -10,12 +11,18 @@ from core.dense.patchmatch.kernels import (
     REGION_START,
     REGION_X,
     REGION_Y,
+    Patch,
+    Source,
+    Sources,
     plane_cost,
     reference_patch,
 )
 from core.dense.patchmatch.planes import slant_ok, uniform
 
 f32 = np.float32
+F32 = NDArray[np.float32]
+U8 = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 DRAWS = 64
 """Random numbers reserved per pixel and sweep."""
 MIN_COSINE = f32(0.12)
@@ -29,7 +36,18 @@ EARLY_MARGIN = f32(0.02)
 
 
 @kernel
-def score_rows(planes, pairs, grey, guide, mask, sources, patch, colour_weight, y0, y1):  # type: ignore[no-untyped-def]
+def score_rows(
+    planes: F32,
+    pairs: U8,
+    grey: U8,
+    guide: U8,
+    mask: Mask,
+    sources: Sources,
+    patch: Patch,
+    colour_weight: F32,
+    y0: int,
+    y1: int,
+) -> None:
     """Cost of every present plane of rows [y0, y1) into channel 3, its two best sources into `pairs`."""
     H, W = grey.shape
     S = sources.A.shape[0]
@@ -46,9 +64,20 @@ def score_rows(planes, pairs, grey, guide, mask, sources, patch, colour_weight, 
 
 
 @kernel
-def offer_rows(  # type: ignore[no-untyped-def]
-    planes, pairs, others, margin, grey, guide, mask, sources, patch, colour_weight, y0, y1
-):
+def offer_rows(
+    planes: F32,
+    pairs: U8,
+    others: F32,
+    margin: np.float32,
+    grey: U8,
+    guide: U8,
+    mask: Mask,
+    sources: Sources,
+    patch: Patch,
+    colour_weight: F32,
+    y0: int,
+    y1: int,
+) -> None:
     """Take the (n, h, w, 4) `others` of rows [y0, y1) that cost less than the pixel's plane plus `margin`; in place.
 
     Others without a plane are passed over; `planes`, `pairs` and the rest are as in `sweep_rows`.
@@ -58,6 +87,8 @@ def offer_rows(  # type: ignore[no-untyped-def]
         for u in range(RADIUS, W - RADIUS):
             if not mask[v, u]:
                 continue
+            first: Source
+            second: Source
             first, second, known = np.int64(pairs[v, u, 0]), np.int64(pairs[v, u, 1]), False
             mean, variance = f32(0), f32(0)
             for n in range(others.shape[0]):
@@ -76,7 +107,7 @@ def offer_rows(  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
+def _best_two(patch: Patch, n_sources: int) -> tuple[Source, Source]:
     """The two best sources of the plane scored last; two different ones wherever there are two."""
     first = patch.order[0]
     second = patch.order[1] if patch.order.size > 1 else (first + 1) % n_sources
@@ -84,9 +115,24 @@ def _best_two(patch, n_sources):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sweep_rows(  # type: ignore[no-untyped-def]
-    planes, pairs, grey, guide, mask, sources, patch, colour_weight, K, limits, colour, key, step, draws, y0, y1
-):
+def sweep_rows(
+    planes: F32,
+    pairs: U8,
+    grey: U8,
+    guide: U8,
+    mask: Mask,
+    sources: Sources,
+    patch: Patch,
+    colour_weight: F32,
+    K: F32,
+    limits: F32,
+    colour: int,
+    key: np.uint64,
+    step: np.float32,
+    draws: int,
+    y0: int,
+    y1: int,
+) -> None:
     """Update the pixels of one colour in rows [y0, y1), reading only the other colour beside itself.
 
     Args:
@@ -111,6 +157,8 @@ def sweep_rows(  # type: ignore[no-untyped-def]
             fu, fv = f32(u), f32(v)
             mean, variance = reference_patch(grey, guide, u, v, sources.A, colour_weight, patch)
             w0, gu0, gv0, c0 = planes[v, u, 0], planes[v, u, 1], planes[v, u, 2], planes[v, u, 3]
+            first: Source
+            second: Source
             first, second = np.int64(pairs[v, u, 0]), np.int64(pairs[v, u, 1])
             counter = np.uint64(v * W + u) * np.uint64(DRAWS)
             for k in range(8 + draws):
@@ -135,7 +183,7 @@ def sweep_rows(  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _neighbour(planes, u, v, region, trial):  # type: ignore[no-untyped-def]
+def _neighbour(planes: F32, u: int, v: int, region: int, trial: F32) -> bool:
     """The best plane of a region, continued to (u, v), into `trial`; False when the region is outside."""
     H, W = planes.shape[:2]
     nx, ny, nc = -1, -1, f32(1e9)
@@ -151,7 +199,18 @@ def _neighbour(planes, u, v, region, trial):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _perturbed(w0, gu0, gv0, f, limits, key, counter, k, step, trial):  # type: ignore[no-untyped-def]
+def _perturbed(
+    w0: np.float32,
+    gu0: np.float32,
+    gv0: np.float32,
+    f: np.float32,
+    limits: F32,
+    key: np.uint64,
+    counter: np.uint64,
+    k: int,
+    step: np.float32,
+    trial: F32,
+) -> bool:
     """The plane with a random change of depth, of slant, or of both in turn; small changes as often as large ones."""
     at = counter + np.uint64(4 * k)
     size = step * uniform(key, at)

@@ -10,10 +10,11 @@ from core.dense.patchmatch.jit import kernel
 from core.geometry.pose import Pose
 
 F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
 
 
 @kernel
-def transfer(planes, M, m, back, shift, low, high, out):  # type: ignore[no-untyped-def]
+def transfer(planes: F32, M: F64, m: F64, back: F64, shift: F64, low: float, high: float, out: F32) -> None:
     """Write each plane of a source view into the reference pixel that it falls on; the nearest surface wins.
 
     Args:

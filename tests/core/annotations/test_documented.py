@@ -23,7 +23,8 @@ def test_the_example_is_read() -> None:
     (detection,) = first.detections
     assert (detection.label, detection.track_id, len(detection.polygon or ())) == ("dent", 7, 3)
     assert [mask.label for mask in first.masks] == ["blade"]
-    assert second.detections == second.masks == ()
+    assert second.detections == ()
+    assert second.masks == ()
 
 
 @pytest.mark.parametrize(("written", "message"), MISTAKES)

@@ -23,7 +23,7 @@ DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}
 SQUARE = [[0.2, 0.2], [0.4, 0.2], [0.4, 0.4], [0.2, 0.4]]
 
 
-def test_the_sample_is_understood():
+def test_the_sample_is_understood() -> None:
     summary = summarise(load_annotations(SAMPLE))
     assert summary.n_keys == 96
     assert summary.n_detections == 90
@@ -35,11 +35,11 @@ def test_the_sample_is_understood():
 
 
 @pytest.mark.parametrize("value", [{}, {"0.0": {}}, {"0.0": {"detections": [], "masks": []}}])
-def test_no_detections_are_valid(value: object):
+def test_no_detections_are_valid(value: object) -> None:
     assert parse_annotations(value).detections == ()
 
 
-def test_no_file_means_no_annotations():
+def test_no_file_means_no_annotations() -> None:
     assert load_annotations(None).entries == ()
 
 
@@ -56,28 +56,28 @@ def test_no_file_means_no_annotations():
         ("10:00:00", Fraction(36_000)),
     ],
 )
-def test_time_keys_are_exact(key: str, seconds: Fraction):
+def test_time_keys_are_exact(key: str, seconds: Fraction) -> None:
     assert parse_time(key) == seconds
 
 
 @pytest.mark.parametrize("key", ["", "abc", "1,5", "12:3", "00:61:00", "1e999", "NaN", "inf", "٣", "1_0", "9" * 50])
-def test_other_keys_are_no_times(key: str):
+def test_other_keys_are_no_times(key: str) -> None:
     with pytest.raises(BadInput, match="is not a time"):
         parse_time(key)
 
 
-def test_ids_follow_the_input_order_and_keys_stay_verbatim():
+def test_ids_follow_the_input_order_and_keys_stay_verbatim() -> None:
     value = {"2.0": {"detections": [DENT, DENT]}, "00:00:01": {"detections": [{**DENT, "track_id": 7}]}}
     detections = parse_annotations(value).detections
     assert [(d.id, d.key, d.time, d.track_id) for d in detections] == [
-        (0, "2.0", 2, None),
-        (1, "2.0", 2, None),
-        (2, "00:00:01", 1, 7),
+        (0, "2.0", Fraction(2), None),
+        (1, "2.0", Fraction(2), None),
+        (2, "00:00:01", Fraction(1), 7),
     ]
     assert detections[0].box == (0.2, 0.2, 0.4, 0.4)
 
 
-def test_a_detection_takes_its_own_polygon_or_the_mask_that_fits():
+def test_a_detection_takes_its_own_polygon_or_the_mask_that_fits() -> None:
     near = [[x + 0.02, y] for x, y in SQUARE]
     masks = [
         {"label": "dent", "polygon": near},
@@ -90,7 +90,7 @@ def test_a_detection_takes_its_own_polygon_or_the_mask_that_fits():
     assert polygons == [tuple(map(tuple, SQUARE)), tuple(map(tuple, own)), None]
 
 
-def test_a_mask_fits_from_an_overlap_of_one_half():
+def test_a_mask_fits_from_an_overlap_of_one_half() -> None:
     def square(right: float) -> Mask:
         return Mask("dent", ((0.0, 0.0), (right, 0.0), (right, 0.5), (0.0, 0.5)))
 
@@ -100,22 +100,22 @@ def test_a_mask_fits_from_an_overlap_of_one_half():
     assert matching_mask("dent", box, [square(0.49)]) is None
 
 
-def test_a_contour_without_area_is_left_out_with_a_warning():
+def test_a_contour_without_area_is_left_out_with_a_warning() -> None:
     annotations = parse_annotations({"1": {"masks": [{"label": "blade", "polygon": [[0, 0], [1, 1]]}]}})
     assert annotations.entries[0].masks == ()
     assert annotations.warnings == ('"1".masks[0].polygon has 2 corners and was left out',)
 
 
-def test_a_coordinate_rounded_over_the_edge_is_moved_onto_it():
+def test_a_coordinate_rounded_over_the_edge_is_moved_onto_it() -> None:
     value = {"1": {"detections": [{**DENT, "bbox": [-1e-9, 0.0, 1.0000004, 1.0]}]}}
     assert parse_annotations(value).detections[0].box == (0.0, 0.0, 1.0, 1.0)
 
 
-def test_a_byte_order_mark_is_no_mistake():
+def test_a_byte_order_mark_is_no_mistake() -> None:
     assert parse_json(b"\xef\xbb\xbf{}") == {}
 
 
-def test_only_the_size_of_a_huge_file_is_looked_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_only_the_size_of_a_huge_file_is_looked_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     huge = tmp_path / "huge.json"
     with huge.open("wb") as stream:
         stream.truncate(100 * 1000 * 1000)
@@ -156,19 +156,20 @@ def parsed(value: object) -> tuple[Annotations | None, BadInput | None]:
         return None, error
 
 
-def test_null_instead_of_a_list_is_an_empty_list():
+def test_null_instead_of_a_list_is_an_empty_list() -> None:
     file = Path(__file__).parents[2] / "data" / "inputs" / "nulldet.json"
     annotations = load_annotations(file)
     assert (len(annotations.entries), annotations.detections) == (96, ())
     box = {"label": "dent", "bbox": [0.1, 0.1, 0.2, 0.2], "score": 1}
     (entry,) = parse_annotations({"1": {"detections": [box], "masks": None}}).entries
     assert (len(entry.detections), entry.masks) == (1, ())
-    for wrong in (0, "", False, {}):
+    others: tuple[object, ...] = (0, "", False, {})
+    for wrong in others:
         with pytest.raises(BadInput, match="must be a list"):
             parse_annotations({"1": {"detections": wrong}})
 
 
-def test_a_text_that_no_database_keeps_is_refused_where_it_stands():
+def test_a_text_that_no_database_keeps_is_refused_where_it_stands() -> None:
     box = {"bbox": [0.1, 0.1, 0.2, 0.2]}
     for member in ({"label": "de\0nt"}, {"label": "dent", "track_id": "\0"}):
         with pytest.raises(BadInput, match=r'"1"\.detections\[0\]\.(label|track_id) holds the character NUL'):
@@ -177,7 +178,7 @@ def test_a_text_that_no_database_keeps_is_refused_where_it_stands():
 
 @settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(JSON_VALUES | st.dictionaries(TIMES, ENTRIES | JSON_VALUES, max_size=4))
-def test_any_json_value_is_understood_or_refused_with_its_place(value: object):
+def test_any_json_value_is_understood_or_refused_with_its_place(value: object) -> None:
     annotations, refusal = parsed(value)
     if annotations is None:
         assert refusal is not None
@@ -196,7 +197,7 @@ def test_any_json_value_is_understood_or_refused_with_its_place(value: object):
 
 @settings(max_examples=200, deadline=None)
 @given(st.binary(max_size=60) | st.text('[]{}":,0123456789eE+-.NaInfity \\u', max_size=60).map(str.encode))
-def test_any_bytes_are_json_or_refused(data: bytes):
+def test_any_bytes_are_json_or_refused(data: bytes) -> None:
     codes = set()
     try:
         parse_json(data)

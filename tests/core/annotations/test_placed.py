@@ -34,7 +34,7 @@ def entries(*keys: str) -> dict[str, object]:
     return {key: {"detections": [DENT]} for key in keys}
 
 
-def test_exact_times_decide():
+def test_exact_times_decide() -> None:
     table = table_of([0, 100, 300, 310, 1000])
     placed = place(parse_annotations(entries("0.0", "0.1", "0.301", "0.309", "00:00:01")), table)
     assert [d.source_index for d in placed.detections] == [0, 1, 2, 3, 4]
@@ -42,20 +42,20 @@ def test_exact_times_decide():
     assert placed.flags == ()
 
 
-def test_times_between_frames_mean_the_one_on_screen():
+def test_times_between_frames_mean_the_one_on_screen() -> None:
     placed = place(parse_annotations(entries("0.01", "0.199", "0.305", "0.9")), table_of([0, 100, 300, 310, 1000]))
     assert [d.source_index for d in placed.detections] == [0, 1, 2, 3]
     assert [flag.code for flag in placed.flags] == ["annotation_times_inexact"]
 
 
-def test_keys_rounded_to_four_decimals_meet_their_frame():
+def test_keys_rounded_to_four_decimals_meet_their_frame() -> None:
     table = table_of(list(range(0, 8000, 83)))
     keys = [f"{row.time_s:.4f}" for row in table.rows]
     placed = place(parse_annotations(entries(*keys)), table)
     assert [d.source_index for d in placed.detections] == list(range(len(keys)))
 
 
-def test_a_few_keys_beyond_the_end_are_kept_without_a_frame():
+def test_a_few_keys_beyond_the_end_are_kept_without_a_frame() -> None:
     annotations = parse_annotations(entries("0.0", "0.4", "7.0"))
     placed = place(annotations, table_of([0, 100, 200, 300, 400]))
     assert [d.source_index for d in placed.detections] == [0, 4, None]
@@ -65,7 +65,7 @@ def test_a_few_keys_beyond_the_end_are_kept_without_a_frame():
     assert summary.warnings == ("key '7.0' lies outside the video",)
 
 
-def test_mostly_foreign_keys_mean_another_video():
+def test_mostly_foreign_keys_mean_another_video() -> None:
     annotations = parse_annotations(entries("0.0", "7.0", "8.0"))
     with pytest.raises(BadInput, match=r'2 of 3 time keys lie beyond its end at 0.500 s \(the latest is "8.0"\)'):
         place(annotations, table_of([0, 100, 200, 300, 400]))
@@ -73,7 +73,7 @@ def test_mostly_foreign_keys_mean_another_video():
 
 
 @pytest.mark.parametrize(("keys", "convention"), [(["1", "3", "9"], "index"), (["100", "310", "9000"], "milliseconds")])
-def test_times_are_seconds_whatever_the_keys_are(keys: list[str], convention: str):
+def test_times_are_seconds_whatever_the_keys_are(keys: list[str], convention: str) -> None:
     annotations = parse_annotations(entries(*keys))
     placed = place(annotations, table_of([0, 100, 300, 310, 1000]), convention)
     assert [(d.source_index, d.time_s) for d in placed.detections][:2] == [(1, 0.1), (3, 0.31)]
@@ -83,7 +83,7 @@ def test_times_are_seconds_whatever_the_keys_are(keys: list[str], convention: st
     assert (summary.first_time_s, summary.last_time_s) == (0.1, 0.31)
 
 
-def test_files_give_back_what_was_placed(tmp_path: Path):
+def test_files_give_back_what_was_placed(tmp_path: Path) -> None:
     value = {
         "0.1": {
             "detections": [{**DENT, "polygon": TRIANGLE, "track_id": "a"}, {**DENT, "score": None}],
@@ -98,7 +98,7 @@ def test_files_give_back_what_was_placed(tmp_path: Path):
     assert len(placed.masks[1]) == 2, "two keys on one frame both count"
 
 
-def test_a_rectangle_covers_exactly_its_pixels_of_the_crop():
+def test_a_rectangle_covers_exactly_its_pixels_of_the_crop() -> None:
     crop = Crop(10, 20, 60, 80, 100, 100)
     polygon = ((0.20, 0.30), (0.40, 0.30), (0.40, 0.50), (0.20, 0.50))
     mask = rasterise([polygon], crop)
@@ -109,7 +109,7 @@ def test_a_rectangle_covers_exactly_its_pixels_of_the_crop():
     assert mask[10:30, 10:30].all()
 
 
-def test_only_blades_count_and_none_is_said():
+def test_only_blades_count_and_none_is_said() -> None:
     crop = Crop(0, 0, 100, 100, 100, 100)
     assert blade_mask([Mask("dent", ((0, 0), (1, 0), (1, 1)))], crop) is None
     upper = Mask("blade", ((0.0, 0.0), (1.0, 0.0), (1.0, 0.2), (0.0, 0.2)))

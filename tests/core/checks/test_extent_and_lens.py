@@ -1,49 +1,59 @@
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
 from core.checks.extent import check_coverage, check_points, check_reprojection
 from core.checks.lens import check_lens, check_shift
+from core.flags import Flag
 from core.geometry.fisheye import fisheye_radius, viewing_angle
 
 
-def codes(flags):
+def codes(flags: Sequence[Flag]) -> list[str]:
     return [flag.code for flag in flags]
 
 
-def test_limits_of_what_a_model_holds():
+def raised(flag: Flag | None) -> Flag:
+    assert flag is not None
+    return flag
+
+
+def test_limits_of_what_a_model_holds() -> None:
     assert check_points(54478, 180) is None
-    assert check_points(100, 60).code == "few_points"
+    assert raised(check_points(100, 60)).code == "few_points"
     assert check_coverage(180, 360) is None
-    assert check_coverage(179, 360).code == "coverage_low"
-    assert check_coverage(0, 0).code == "coverage_low"
+    assert raised(check_coverage(179, 360)).code == "coverage_low"
+    assert raised(check_coverage(0, 0)).code == "coverage_low"
     assert check_reprojection(1.1958) is None
-    assert check_reprojection(2.5).value == 2.5
+    assert raised(check_reprojection(2.5)).value == 2.5
 
 
-def test_the_lens_of_a_borescope_is_plausible():
+def test_the_lens_of_a_borescope_is_plausible() -> None:
     assert check_lens(787, 525, np.array([520, 520, 442, 281, 0.04, 0.005, 0, 0.0])) == []
 
 
 @pytest.mark.parametrize(
     ("focal", "code"), [(4000.0, ["focal_implausible"]), (150.0, ["focal_implausible"]), (520.0, [])]
 )
-def test_field_of_view_outside_of_15_to_200_degrees(focal, code):
+def test_field_of_view_outside_of_15_to_200_degrees(focal: float, code: list[str]) -> None:
     assert codes(check_lens(787, 525, np.array([focal, focal, 393, 262, 0, 0, 0, 0.0]))) == code
 
 
-def test_a_polynomial_that_turns_back_inside_the_image_is_flagged():
+def test_a_polynomial_that_turns_back_inside_the_image_is_flagged() -> None:
     flags = check_lens(540, 360, np.array([566.0, 538, 270, 180, 0.6, -0.55, -8.8, 5.0]))
     assert codes(flags) == ["distortion_implausible"]
 
 
-def test_a_focal_length_that_moves_with_the_choice_of_tracks_is_flagged():
+def test_a_focal_length_that_moves_with_the_choice_of_tracks_is_flagged() -> None:
     assert check_shift(0.05) is None
     assert check_shift(-0.05) is None
-    flag = check_shift(-0.2)
+    flag = raised(check_shift(-0.2))
     assert (flag.code, flag.severity, flag.value) == ("lens_unsettled", "warning", 0.2)
 
 
-def test_viewing_angle_inverts_the_polynomial():
+def test_viewing_angle_inverts_the_polynomial() -> None:
     distortion = np.array([0.04, 0.005, -0.002, 0.0])
     for theta in (0.0, 0.3, 0.9):
         radius = float(fisheye_radius(np.array([theta]), distortion)[0])

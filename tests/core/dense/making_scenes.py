@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -58,7 +57,7 @@ def look(center: F64, target: F64) -> F64:
     return np.column_stack([R, -R @ center])
 
 
-def camera(fisheye: bool = False) -> Any:
+def camera(fisheye: bool = False) -> pycolmap.Camera:
     if fisheye:
         params = [FOCAL, FOCAL, WIDTH / 2 + 4, HEIGHT / 2 - 3, 0.02, -0.01, 0.0, 0.0]
         return pycolmap.Camera(model="OPENCV_FISHEYE", width=WIDTH, height=HEIGHT, params=params, camera_id=1)
@@ -66,7 +65,7 @@ def camera(fisheye: bool = False) -> Any:
     return pycolmap.Camera(model="PINHOLE", width=WIDTH, height=HEIGHT, params=params, camera_id=1)
 
 
-def render(scene: Scene, cam: Any, pose: F64) -> tuple[NDArray[np.uint8], F64, F64]:
+def render(scene: Scene, cam: pycolmap.Camera, pose: F64) -> tuple[NDArray[np.uint8], F64, F64]:
     """Colour image, depth along the axis and camera-frame normals; pixel centres at 0.5."""
     v, u = np.mgrid[0:HEIGHT, 0:WIDTH]
     pixels = np.column_stack([u.ravel() + 0.5, v.ravel() + 0.5])
@@ -74,7 +73,7 @@ def render(scene: Scene, cam: Any, pose: F64) -> tuple[NDArray[np.uint8], F64, F
     R, center = pose[:, :3], -pose[:, :3].T @ pose[:, 3]
     t, normals = scene.hit(center, rays @ R)
     grey = scene.texture(center + (rays @ R) * t[:, None]).clip(0, 255).astype(np.uint8)
-    image = cv2.cvtColor(grey.reshape(HEIGHT, WIDTH), cv2.COLOR_GRAY2BGR)
+    image = np.asarray(cv2.cvtColor(grey.reshape(HEIGHT, WIDTH), cv2.COLOR_GRAY2BGR), np.uint8)
     return image, t.reshape(HEIGHT, WIDTH), (normals @ R.T).reshape(HEIGHT, WIDTH, 3)
 
 
@@ -84,7 +83,7 @@ def poses(count: int) -> list[F64]:
     return [look(np.array([x, 0.25 * np.sin(3 * x), 0.1 * x]), np.array([0.0, 0.0, 4.5])) for x in at]
 
 
-def build(folder: Path, count: int = 6, fisheye: bool = True) -> tuple[Scene, Any]:
+def build(folder: Path, count: int = 6, fisheye: bool = True) -> tuple[Scene, pycolmap.Reconstruction]:
     """Write ``extend/model`` and ``frames/images`` of the scene; returns it with its model."""
     scene, cam = Scene(), camera(fisheye)
     model = pycolmap.Reconstruction()
@@ -120,7 +119,7 @@ def _surface_points(scene: Scene) -> F64:
     return np.asarray(rays * t[:, None])
 
 
-def _observe(scene: Scene, cam: Any, pose: F64, points: F64) -> tuple[NDArray[np.int64], F64]:
+def _observe(scene: Scene, cam: pycolmap.Camera, pose: F64, points: F64) -> tuple[NDArray[np.int64], F64]:
     R, center = pose[:, :3], -pose[:, :3].T @ pose[:, 3]
     pixels = np.asarray(cam.img_from_cam(points @ R.T + pose[:, 3]))
     t, _ = scene.hit(center, points - center)

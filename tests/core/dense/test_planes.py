@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from core.dense.cameras import Pinhole
 from core.dense.patchmatch.jit import kernel
 from core.dense.patchmatch.planes import from_normals, to_normals, uniform, upsample
 from core.dense.patchmatch.transfer import planes_from_source
 from core.geometry.pose import Pose
+
+Plane = tuple[Pinhole, NDArray[np.float64], NDArray[np.float32]]
 
 
 def _plane_image(pinhole: Pinhole, normal: np.ndarray, distance: float) -> np.ndarray:
@@ -30,7 +33,7 @@ def plane() -> tuple[Pinhole, np.ndarray, np.ndarray]:
     return pinhole, normal, _plane_image(pinhole, normal, -3.0)
 
 
-def test_normals_of_a_plane_are_its_normal_and_come_back(plane):
+def test_normals_of_a_plane_are_its_normal_and_come_back(plane: Plane) -> None:
     pinhole, normal, planes = plane
     normals = to_normals(planes, pinhole.index_matrix())
     np.testing.assert_allclose(normals, np.broadcast_to(normal, normals.shape), atol=1e-4)
@@ -38,7 +41,7 @@ def test_normals_of_a_plane_are_its_normal_and_come_back(plane):
     np.testing.assert_allclose(back[..., :3], planes[..., :3], atol=1e-5)
 
 
-def test_pixels_without_depth_have_no_plane_and_no_normal(plane):
+def test_pixels_without_depth_have_no_plane_and_no_normal(plane: Plane) -> None:
     pinhole, _, planes = plane
     planes[3, 4] = 0
     normals = to_normals(planes, pinhole.index_matrix())
@@ -47,7 +50,7 @@ def test_pixels_without_depth_have_no_plane_and_no_normal(plane):
     assert not from_normals(depth, normals, pinhole.index_matrix())[3, 4].any()
 
 
-def test_upsampled_planes_are_exact_on_a_plane(plane):
+def test_upsampled_planes_are_exact_on_a_plane(plane: Plane) -> None:
     pinhole, normal, _ = plane
     coarse = _plane_image(pinhole.halved(), normal, -3.0)
     fine = upsample(coarse, pinhole.width, pinhole.height)
@@ -55,12 +58,12 @@ def test_upsampled_planes_are_exact_on_a_plane(plane):
 
 
 @kernel
-def _draw(key, out):
+def _draw(key: np.uint64, out: NDArray[np.float32]) -> None:
     for i in range(out.size):
         out[i] = uniform(key, np.uint64(i))
 
 
-def test_random_numbers_are_uniform_and_depend_on_the_key_only():
+def test_random_numbers_are_uniform_and_depend_on_the_key_only() -> None:
     first, again, other = (np.empty(20000, np.float32) for _ in range(3))
     _draw(np.uint64(5), first)
     _draw(np.uint64(5), again)
@@ -73,7 +76,7 @@ def test_random_numbers_are_uniform_and_depend_on_the_key_only():
     assert counts.min() > 1800
 
 
-def test_a_plane_seen_from_another_camera_is_the_same_plane():
+def test_a_plane_seen_from_another_camera_is_the_same_plane() -> None:
     pinhole = Pinhole(60.0, 21.0, 15.0, 40, 32)
     a = np.radians(9)
     turn = np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])

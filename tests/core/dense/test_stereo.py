@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
 
 import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
@@ -17,15 +20,21 @@ from core.dense.stereo import PhotometricStereo
 from core.dense.workspace import read_maps, write_maps, write_patch_match_config, write_workspace
 from core.errors import BadInput, StageFailed
 from core.settings import make_settings
-from core.stage import StageTask
+from core.stage import Facts, StageTask
 from core.stages import depth as depth_stage
 from core.stages import fuse as fuse_stage
 from core.stages import geometric as geometric_stage
 from core.surface.ply import read_mesh
-from tests.core.dense.conftest import OPTIONS
+from tests.core.dense.conftest import OPTIONS, Undistorted
+
+Chain = tuple[
+    dict[str, Path],
+    dict[str, Facts],
+    Callable[[ModuleType, str, Mapping[str, int], Mapping[str, Path]], tuple[Path, Facts]],
+]
 
 
-def _truth(undistorted, name: str) -> tuple[np.ndarray, np.ndarray]:
+def _truth(undistorted: Undistorted, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Closed-form depth and camera-frame normals of an undistorted view."""
     scene = open_scene(undistorted.folder)
     pin, pose = scene.pinhole, scene.poses[name]
@@ -36,11 +45,11 @@ def _truth(undistorted, name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def chain(undistorted):
+def chain(undistorted: Undistorted) -> Chain:
     """Stages depth and geometric over all views, in two chunks."""
     settings, root = make_settings("default", OPTIONS), undistorted.root
 
-    def run(stage, key, args, inputs):
+    def run(stage: ModuleType, key: str, args: Mapping[str, int], inputs: Mapping[str, Path]) -> tuple[Path, Facts]:
         out = root / key
         out.mkdir(parents=True)
         task = StageTask(key, args, settings, inputs, {}, root / "v.mp4", None, out)
@@ -60,7 +69,7 @@ def chain(undistorted):
     return inputs, facts, run
 
 
-def test_photometric_depth_is_right_nearly_everywhere(undistorted, chain):
+def test_photometric_depth_is_right_nearly_everywhere(undistorted: Undistorted, chain: Chain) -> None:
     inputs, facts, _ = chain
     assert facts["depth/000"]["method"] == "cpu"
     found = read_map(inputs["depth/000"] / "0002.jpg.npz")
@@ -72,7 +81,7 @@ def test_photometric_depth_is_right_nearly_everywhere(undistorted, chain):
     assert (error < 0.02).mean() > 0.85
 
 
-def test_geometric_maps_keep_what_is_right(undistorted, chain):
+def test_geometric_maps_keep_what_is_right(undistorted: Undistorted, chain: Chain) -> None:
     inputs, _, _ = chain
     before, after = (read_map(inputs[f"{s}/000"] / "0002.jpg.npz") for s in ("depth", "geometric"))
     depth, normal = _truth(undistorted, "0002.jpg")
@@ -86,7 +95,7 @@ def test_geometric_maps_keep_what_is_right(undistorted, chain):
     assert (after.cost[~have] == 2).all()
 
 
-def test_filter_needs_sources_that_agree(undistorted, chain):
+def test_filter_needs_sources_that_agree(undistorted: Undistorted, chain: Chain) -> None:
     inputs, _, _ = chain
     scene = open_scene(undistorted.folder)
     own = {"0002.jpg": inputs["depth/000"] / "0002.jpg.npz"}
@@ -98,7 +107,7 @@ def test_filter_needs_sources_that_agree(undistorted, chain):
     assert GeometricFilter(scene, lenient, own, 0).depth_map(view).valid_share > 0.4
 
 
-def test_result_does_not_depend_on_threads_but_on_the_seed(undistorted):
+def test_result_does_not_depend_on_threads_but_on_the_seed(undistorted: Undistorted) -> None:
     scene = open_scene(undistorted.folder)
     settings = make_settings("default", OPTIONS).dense
 
@@ -111,7 +120,7 @@ def test_result_does_not_depend_on_threads_but_on_the_seed(undistorted):
     assert digest(1, 1) != one
 
 
-def test_fused_cloud_lies_on_the_scene(undistorted, chain):
+def test_fused_cloud_lies_on_the_scene(undistorted: Undistorted, chain: Chain) -> None:
     inputs, facts, run = chain
     out, fused = run(fuse_stage, "fuse", {}, inputs)
     cloud = read_mesh(out / "fused.ply")
@@ -129,7 +138,7 @@ def test_fused_cloud_lies_on_the_scene(undistorted, chain):
     assert facts["geometric/001"]["n_views"] == 3
 
 
-def test_exact_maps_fuse_to_the_surface_only_with_the_half_pixel(undistorted, tmp_path):
+def test_exact_maps_fuse_to_the_surface_only_with_the_half_pixel(undistorted: Undistorted, tmp_path: Path) -> None:
     scene = open_scene(undistorted.folder)
     medians = {}
     for offset in (0.0, 0.5):
@@ -155,7 +164,7 @@ def test_exact_maps_fuse_to_the_surface_only_with_the_half_pixel(undistorted, tm
     assert medians[0.0] < 0.5 * medians[0.5]
 
 
-def test_maps_survive_both_file_formats(tmp_path):
+def test_maps_survive_both_file_formats(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     normal = rng.normal(size=(9, 13, 3))
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
@@ -178,7 +187,7 @@ def test_maps_survive_both_file_formats(tmp_path):
         read_map(tmp_path / "broken.npz")
 
 
-def test_cuda_is_chosen_when_there_and_refused_when_demanded_in_vain():
+def test_cuda_is_chosen_when_there_and_refused_when_demanded_in_vain() -> None:
     auto, cpu, cuda = (make_settings("default", {"dense.method": m}).dense for m in ("auto", "cpu", "cuda"))
     assert resolve_method(auto, has_cuda=False) == "cpu"
     assert resolve_method(auto, has_cuda=True) == "cuda"
@@ -189,7 +198,7 @@ def test_cuda_is_chosen_when_there_and_refused_when_demanded_in_vain():
     assert caught.value.where == "dense.method"
 
 
-def test_colmap_reads_our_options_and_configuration(undistorted, tmp_path):
+def test_colmap_reads_our_options_and_configuration(undistorted: Undistorted, tmp_path: Path) -> None:
     settings = make_settings("default", {"dense.min_ncc": 0.2, "dense.min_consistent": 3}).dense
     first, second = (patch_match_options(settings, geometric=flag) for flag in (False, True))
     assert (first.geom_consistency, first.filter) == (False, False)

@@ -13,14 +13,15 @@ from core.dense.undistort import undistort_map
 from core.dense.views import read_views
 from core.settings import make_settings
 from tests.core.dense import making_scenes as scenes
+from tests.core.dense.conftest import Undistorted
 
 
-def _fisheye(focal: float = 520.0) -> object:
+def _fisheye(focal: float = 520.0) -> pycolmap.Camera:
     params = [focal, focal, 442.0, 281.0, 0.0, 0.0, 0.0, 0.0]
     return pycolmap.Camera(model="OPENCV_FISHEYE", width=787, height=525, params=params, camera_id=1)
 
 
-def test_centre_keeps_its_resolution_and_stretch_is_bounded():
+def test_centre_keeps_its_resolution_and_stretch_is_bounded() -> None:
     pinhole = choose_pinhole(_fisheye(), make_settings().dense)
     assert pinhole.focal_px == 520.0
     # 2 x stretch is 45 degrees: the left border (48.7 degrees off the axis) is pulled in to tan = 1.
@@ -29,7 +30,7 @@ def test_centre_keeps_its_resolution_and_stretch_is_bounded():
     assert pinhole.width - pinhole.cx == pytest.approx(345 / (np.pi / 4), abs=3)
 
 
-def test_scale_and_size_limit_shrink_the_whole_image():
+def test_scale_and_size_limit_shrink_the_whole_image() -> None:
     whole = choose_pinhole(_fisheye(), make_settings().dense)
     half = choose_pinhole(_fisheye(), make_settings("default", {"dense.scale": 0.5}).dense)
     small = choose_pinhole(_fisheye(), make_settings("default", {"dense.max_image_size_px": 400}).dense)
@@ -39,7 +40,7 @@ def test_scale_and_size_limit_shrink_the_whole_image():
     assert small.cx / small.width == pytest.approx(whole.cx / whole.width, abs=2e-3)
 
 
-def test_halving_keeps_rays():
+def test_halving_keeps_rays() -> None:
     pinhole = choose_pinhole(_fisheye(), make_settings().dense)
     half = pinhole.halved()
     ray = np.array([0.2, -0.1, 1.0])
@@ -48,7 +49,7 @@ def test_halving_keeps_rays():
     np.testing.assert_allclose(coarse[:2] * 2 + 0.5, fine[:2], atol=1e-9)
 
 
-def test_undistorted_image_is_what_a_pinhole_camera_would_see(undistorted):
+def test_undistorted_image_is_what_a_pinhole_camera_would_see(undistorted: Undistorted) -> None:
     scene = open_scene(undistorted.folder)
     pin = scene.pinhole
     params = [pin.focal_px, pin.focal_px, pin.cx, pin.cy]
@@ -60,7 +61,9 @@ def test_undistorted_image_is_what_a_pinhole_camera_would_see(undistorted):
     center = -pose[:, :3].T @ pose[:, 3]
     t, _ = undistorted.scene.hit(center, rays @ pose[:, :3])
     truth = undistorted.scene.texture(center + (rays @ pose[:, :3]) * t[:, None]).reshape(pin.height, pin.width)
-    seen = cv2.imread(str(undistorted.folder / "images" / "0002.jpg"), cv2.IMREAD_GRAYSCALE).astype(float)
+    seen = cv2.imread(str(undistorted.folder / "images" / "0002.jpg"), cv2.IMREAD_GRAYSCALE)
+    assert seen is not None
+    seen = seen.astype(float)
     inside = cv2.erode(scene.mask().astype(np.uint8), np.ones((5, 5))) > 0
     error = np.abs(seen - truth)[inside]
     assert inside.mean() > 0.8
@@ -70,7 +73,7 @@ def test_undistorted_image_is_what_a_pinhole_camera_would_see(undistorted):
     assert np.median(moved) > 2 * np.median(error)
 
 
-def test_mask_is_where_the_lens_sees():
+def test_mask_is_where_the_lens_sees() -> None:
     camera = _fisheye()
     mapping = undistort_map(camera, choose_pinhole(camera, make_settings().dense))
     picture = mapping.apply(np.full((525, 787, 3), 200, np.uint8))
@@ -79,7 +82,7 @@ def test_mask_is_where_the_lens_sees():
     assert mapping.inside.mean() > 0.8
 
 
-def test_model_keeps_poses_and_its_tracks_project_onto_their_points(undistorted):
+def test_model_keeps_poses_and_its_tracks_project_onto_their_points(undistorted: Undistorted) -> None:
     model = pycolmap.Reconstruction(str(undistorted.folder / "sparse"))
     assert {camera.model.name for camera in model.cameras.values()} == {"PINHOLE"}
     assert undistorted.facts["n_views"] == 6

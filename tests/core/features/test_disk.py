@@ -55,7 +55,7 @@ def test_same_keypoints_and_descriptors_as_kornia(reference: DISK, height: int, 
 
 def test_the_weights_of_the_wheel_give_what_kornia_gives() -> None:
     network = DISK().eval()
-    network.load_state_dict(load_weights(DISK_WEIGHTS)["extractor"])
+    network.load_state_dict(load_weights(DISK_WEIGHTS, "extractor"))
     image = np.kron(_image(40, 48, seed=2), np.ones((2, 2, 1))).astype(np.uint8)
     keypoints, _, descriptors = _kornia(network, image, None)
     found = Disk().detect(image, 10**6)

@@ -19,7 +19,7 @@ from tests.core.making_videos import every_ms, make_video
 CROP = Crop(10, 20, 150, 120, 160, 128)
 
 
-def test_each_image_is_the_crop_of_its_source_frame(tmp_path: Path):
+def test_each_image_is_the_crop_of_its_source_frame(tmp_path: Path) -> None:
     video = make_video(tmp_path / "a.mp4", every_ms(40, 12))
     frames = [rgb for *_, rgb in iter_frames(video)]
     chosen = [ChosenFrame(0, 2, "sampled"), ChosenFrame(1, 9, "both"), ChosenFrame(2, 5, "added")]
@@ -27,14 +27,16 @@ def test_each_image_is_the_crop_of_its_source_frame(tmp_path: Path):
     export_frames(video, probe_video(video), chosen, CROP, tmp_path, jpeg_quality=100, on_frame=seen.append)
     assert sorted(path.name for path in tmp_path.glob("*.jpg")) == ["0000.jpg", "0001.jpg", "0002.jpg"]
     for frame in chosen:
-        image = cv2.imread(str(tmp_path / f"{frame.index:04d}.jpg"))[..., ::-1]
+        coded = cv2.imread(str(tmp_path / f"{frame.index:04d}.jpg"))
+        assert coded is not None
+        image = coded[..., ::-1]
         expected = frames[frame.source_index][20:120, 10:150]
         assert image.shape == (100, 140, 3)
         assert np.abs(image.astype(int) - expected).mean() < 3
     assert seen == list(range(1, 11)), "decoding stops after the last frame that is wanted"
 
 
-def test_another_video_under_the_same_name_is_noticed(tmp_path: Path):
+def test_another_video_under_the_same_name_is_noticed(tmp_path: Path) -> None:
     table = probe_video(make_video(tmp_path / "a.mp4", every_ms(40, 6)))
     other = make_video(tmp_path / "b.mp4", every_ms(40, 6), size=(176, 144))
     with pytest.raises(StageFailed, match="changed since it was probed"):

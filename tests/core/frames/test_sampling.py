@@ -34,7 +34,7 @@ def interval_of(table: FrameTable, preset: str, **options: float) -> Interval:
     return clip_interval(table, settings.frames, settings.overrides)
 
 
-def test_the_thesis_samples_450_frames_from_60_to_3606():
+def test_the_thesis_samples_450_frames_from_60_to_3606() -> None:
     interval = interval_of(THESIS_VIDEO, "thesis")
     assert (interval.first, interval.last, interval.flags) == (60, 3606, ())
     chosen = choose_frames(interval, {100, 200}, make_settings("thesis").frames)
@@ -47,7 +47,7 @@ def test_the_thesis_samples_450_frames_from_60_to_3606():
     assert {frame.role for frame in chosen} == {"sampled"}
 
 
-def test_the_average_rate_rule_differs_from_exact_times_where_the_rate_varies():
+def test_the_average_rate_rule_differs_from_exact_times_where_the_rate_varies() -> None:
     times = [Fraction(i, 10) for i in range(100)] + [10 + Fraction(i, 30) for i in range(300)]
     table = table_of(times, Fraction(20))
     assert interval_of(table, "default", clip_start_s=5, clip_end_s=15).first == 50
@@ -55,7 +55,7 @@ def test_the_average_rate_rule_differs_from_exact_times_where_the_rate_varies():
 
 
 @given(st.integers(0, 5000), st.integers(0, 5000), st.integers(2, 700))
-def test_samples_are_increasing_and_reach_both_ends(first: int, length: int, count: int):
+def test_samples_are_increasing_and_reach_both_ends(first: int, length: int, count: int) -> None:
     sampled = sample_uniformly(first, first + length, count)
     assert len(sampled) == min(count, length + 1)
     assert sampled == sorted(set(sampled))
@@ -63,20 +63,20 @@ def test_samples_are_increasing_and_reach_both_ends(first: int, length: int, cou
     assert length == 0 or sampled[-1] == first + length
 
 
-def test_a_presets_interval_is_cut_to_the_video():
+def test_a_presets_interval_is_cut_to_the_video() -> None:
     table = constant_rate(Fraction(12), 360)
     interval = interval_of(table, "thesis")
     assert (interval.first, interval.last) == (24, 359)
     assert [flag.code for flag in interval.flags] == ["interval_clipped"]
 
 
-def test_a_preset_that_leaves_under_ten_seconds_uses_the_whole_video():
+def test_a_preset_that_leaves_under_ten_seconds_uses_the_whole_video() -> None:
     interval = interval_of(constant_rate(Fraction(12), 130), "thesis")
     assert (interval.first, interval.last) == (0, 129)
     assert [flag.code for flag in interval.flags] == ["interval_clipped"]
 
 
-def test_a_presets_bound_gives_way_to_the_users():
+def test_a_presets_bound_gives_way_to_the_users() -> None:
     table = constant_rate(Fraction(10), 1300)
     late = interval_of(table, "thesis", clip_start_s=125)
     assert (late.first, late.last) == (1250, 1299)
@@ -85,12 +85,12 @@ def test_a_presets_bound_gives_way_to_the_users():
     assert early.flags
 
 
-def test_the_default_takes_the_whole_video_without_a_flag():
+def test_the_default_takes_the_whole_video_without_a_flag() -> None:
     interval = interval_of(constant_rate(Fraction(12), 360), "default")
     assert (interval.first, interval.last, interval.flags) == (0, 359, ())
 
 
-def test_a_users_short_interval_is_taken_as_it_is():
+def test_a_users_short_interval_is_taken_as_it_is() -> None:
     interval = interval_of(constant_rate(Fraction(10), 360), "default", clip_start_s=3, clip_end_s=5)
     assert (interval.first, interval.last, interval.flags) == (30, 50, ())
 
@@ -104,13 +104,13 @@ def test_a_users_short_interval_is_taken_as_it_is():
         ("default", {"clip_start_s": 5, "clip_end_s": 5.01}, "interval_empty", "only one frame"),
     ],
 )
-def test_a_users_impossible_interval_is_refused(preset: str, options: dict[str, float], code: str, cause: str):
+def test_a_users_impossible_interval_is_refused(preset: str, options: dict[str, float], code: str, cause: str) -> None:
     with pytest.raises(BadInput, match=cause) as caught:
         interval_of(constant_rate(Fraction(12), 360), preset, **options)
     assert caught.value.code == code
 
 
-def test_annotated_frames_join_the_search_and_roles_say_why():
+def test_annotated_frames_join_the_search_and_roles_say_why() -> None:
     settings = make_settings("default", {"frames.count": 4}).frames
     chosen = choose_frames(Interval(0, 9), {3, 4, 12}, settings)
     assert [(f.index, f.source_index, f.role) for f in chosen] == [
@@ -122,7 +122,7 @@ def test_annotated_frames_join_the_search_and_roles_say_why():
     ]
 
 
-def test_annotated_frames_over_the_budget_are_added_afterwards():
+def test_annotated_frames_over_the_budget_are_added_afterwards() -> None:
     settings = make_settings("default", {"frames.count": 4, "frames.max_count": 6}).frames
     annotated = {1, 2, 4, 5, 7, 8}
     chosen = choose_frames(Interval(0, 9), annotated, settings)
@@ -136,20 +136,20 @@ def test_annotated_frames_over_the_budget_are_added_afterwards():
     assert [f.source_index for f in search if f.role == "annotated"] == [1, 8], "the budget is spread over the clip"
 
 
-def test_a_budget_below_the_sample_takes_no_annotated_frame_into_the_search():
+def test_a_budget_below_the_sample_takes_no_annotated_frame_into_the_search() -> None:
     settings = make_settings("default", {"frames.count": 5, "frames.max_count": 3}).frames
     chosen = choose_frames(Interval(0, 8), {1, 3}, settings)
     assert [f.role for f in chosen] == ["sampled"] * 5 + ["added"] * 2
 
 
-def test_an_annotated_frame_far_from_the_samples_gets_neighbours_on_both_sides():
+def test_an_annotated_frame_far_from_the_samples_gets_neighbours_on_both_sides() -> None:
     settings = make_settings("default", {"frames.count": 5}).frames
     roles = {f.source_index: f.role for f in choose_frames(Interval(0, 400), {150, 165, 205, 398}, settings, reach=10)}
     neighbours = {source for source, role in roles.items() if role == "neighbour"}
     assert neighbours == {140, 160, 175, 215, 388}  # 165 has 160 and 205 has 200; 398 has 400 behind it
 
 
-def test_neighbours_come_after_the_annotated_frames_in_the_budget():
+def test_neighbours_come_after_the_annotated_frames_in_the_budget() -> None:
     settings = make_settings("default", {"frames.count": 5, "frames.max_count": 8}).frames
     chosen = choose_frames(Interval(0, 400), {150, 250}, settings, reach=10)
     assert [frame.role for frame in chosen].count("annotated") == 2

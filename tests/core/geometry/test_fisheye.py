@@ -18,7 +18,7 @@ def written_out(theta: Any, lens: Any) -> tuple[float, float]:
 
 
 def of_lens(theta: Any, lens: Any) -> tuple[float, float]:
-    return fisheye_radius_and_slope(theta, lens[4], lens[5], lens[6], lens[7])  # type: ignore[no-any-return]
+    return fisheye_radius_and_slope(theta, lens[4], lens[5], lens[6], lens[7])
 
 
 def random_lenses(count: int) -> np.ndarray:

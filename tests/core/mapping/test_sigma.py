@@ -13,7 +13,7 @@ FOCAL = 400.0
 
 
 def directions(points: np.ndarray) -> np.ndarray:
-    return points / np.linalg.norm(points, axis=1, keepdims=True)
+    return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
 
 
 def test_the_covariance_of_a_pose_is_what_noise_makes_of_it() -> None:
@@ -26,7 +26,7 @@ def test_the_covariance_of_a_pose_is_what_noise_makes_of_it() -> None:
 
         def residual(motion: np.ndarray) -> np.ndarray:
             moved = points @ Rotation.from_rotvec(motion[:3]).as_matrix().T + motion[3:]
-            return (directions(moved) - seen).ravel()
+            return np.ravel(directions(moved) - seen)
 
         return np.asarray(least_squares(residual, np.zeros(6)).x)
 

@@ -109,7 +109,8 @@ def test_a_blade_without_a_surface_is_not_taken_for_the_next_one() -> None:
     points = np.array(ON_NEAR) + np.array([[0.05, 0, 0], [-0.05, 0.02, 0], [0, -0.05, 0.01]])
     sparse = {3: (np.array([plates.pixel(point, 3) for point in points]), points)}
     unaware = placed([one], mesh=far, looked=[3])[0]
-    assert (unaware.row.outcome, unaware.row.z) == ("mapped", pytest.approx(FAR, abs=1e-3))
+    assert unaware.row.outcome == "mapped"
+    assert unaware.row.z == pytest.approx(FAR, abs=1e-3)
     found = placed([one], mesh=far, looked=[3], sparse=sparse)[0]
     assert (found.row.outcome, found.row.reason, found.row.rung) == ("approximate", "off_surface", "sparse")
     assert xyz(found) == pytest.approx(ON_NEAR, abs=0.05)
@@ -119,7 +120,8 @@ def test_a_blade_without_a_surface_is_not_taken_for_the_next_one() -> None:
     assert [row.row.outcome for row in outvoted] == ["mapped"] * len(seen_behind)
     # So do depth maps that show it.
     shown = placed([one], mesh=far, looked=[3], sparse=sparse, depth=plates.depth_maps_of(far, [2, 3, 4]))[0]
-    assert (shown.row.outcome, shown.row.z) == ("mapped", pytest.approx(FAR, abs=1e-3))
+    assert shown.row.outcome == "mapped"
+    assert shown.row.z == pytest.approx(FAR, abs=1e-3)
 
 
 def test_sparse_points_at_two_depths_give_one_of_them_and_never_nothing() -> None:

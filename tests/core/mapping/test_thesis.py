@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from core.mapping.rows import Detection
 from core.mapping.support import Observations, SparseModel
-from core.mapping.thesis import FrameTimes, match_frames, place_detections
+from core.mapping.thesis import FrameTimes, Placement, match_frames, place_detections
 from core.roi import Crop
 from core.settings import make_settings
 from core.settings.groups import MappingSettings
@@ -32,8 +33,8 @@ def model(indices: Sequence[int]) -> SparseModel:
     return SparseModel(dict.fromkeys(indices, seen), positions)
 
 
-def place(found: object, settings: MappingSettings = PTS) -> object:
-    return place_detections([found], frames(settings.time_rule), CROP, settings, model)[0]  # type: ignore[list-item]
+def place(found: Detection, settings: MappingSettings = PTS) -> Placement:
+    return place_detections([found], frames(settings.time_rule), CROP, settings, model)[0]
 
 
 def test_the_place_is_the_centroid_of_the_points_in_the_box() -> None:
@@ -56,7 +57,7 @@ def test_the_place_is_the_centroid_of_the_points_in_the_box() -> None:
         (detection(time_s=0.6, source_index=15, box=(0.8, 0.7, 0.85, 0.8)), "no_support", 3),
     ],
 )
-def test_reasons(found: object, reason: str, frame: int | None) -> None:
+def test_reasons(found: Detection, reason: str, frame: int | None) -> None:
     placed = place(found)
     assert (placed.row.outcome, placed.row.reason, placed.row.frame_index) == ("unplaced", reason, frame)
     assert (placed.row.x, placed.row.rung, placed.row.model, placed.row.support_points) == (None, None, None, 0)

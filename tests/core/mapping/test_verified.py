@@ -4,23 +4,24 @@ import numpy as np
 import pycolmap
 import pytest
 
+from core.geometry.boxes import Box
 from core.mapping.support import observations_of
 from core.mapping.verified import verified_detections
 from core.settings.groups import MapperSettings
-from core.sparse.cases import Case, run_case
-from tests.core.sparse.scene import make_scene, view_graph, write_graph
+from core.sparse.cases import Case
+from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
 
 N, FRAME = 12, 5
 
 
 @pytest.fixture(scope="module")
-def model(tmp_path_factory):
+def model(tmp_path_factory: pytest.TempPathFactory) -> pycolmap.Reconstruction:
     scene = make_scene(N)
     graph = write_graph(tmp_path_factory.mktemp("verified") / "graph", scene, view_graph(scene))
-    return run_case(Case(graph, 0, N, MapperSettings(), 0)).model
+    return model_of(Case(graph, 0, N, MapperSettings(), 0))
 
 
-def around(model, count: int):
+def around(model: pycolmap.Reconstruction, count: int) -> tuple[Box, list[int]]:
     """A box in FRAME that holds just so many of the points that three views confirm, and their ids."""
     seen = observations_of(model.image(FRAME + 1))
     long = [i for i, k in enumerate(seen.point_ids) if model.point3D(int(k)).track.length() >= 3]
@@ -31,14 +32,14 @@ def around(model, count: int):
     return box, [int(k) for k in seen.inside(box)]
 
 
-def test_a_box_with_points_of_three_views_is_verified(model):
+def test_a_box_with_points_of_three_views_is_verified(model: pycolmap.Reconstruction) -> None:
     box, ids = around(model, 12)
     assert len(ids) >= 3
     boxes = {FRAME: [(box, "dent"), ((0.0, 0.0, 0.5, 0.5), "dent")], FRAME + 1: []}
     assert verified_detections(model, boxes) == 1
 
 
-def test_what_two_views_see_verifies_nothing(model):
+def test_what_two_views_see_verifies_nothing(model: pycolmap.Reconstruction) -> None:
     box, ids = around(model, 12)
     work = pycolmap.Reconstruction(model)
     for point_id in ids:
@@ -50,6 +51,6 @@ def test_what_two_views_see_verifies_nothing(model):
     assert verified_detections(work, {FRAME: [(box, "dent")]}) == 0
 
 
-def test_a_frame_that_is_not_registered_verifies_nothing(model):
+def test_a_frame_that_is_not_registered_verifies_nothing(model: pycolmap.Reconstruction) -> None:
     box, _ = around(model, 12)
     assert verified_detections(model, {FRAME: [(box, "dent")], N + 3: [(box, "dent")]}) == 1

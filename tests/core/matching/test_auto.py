@@ -9,7 +9,8 @@ import torch
 
 from core.errors import BadInput
 from core.features.io import FrameFeatures
-from core.matching.auto import GIVE_UP_AFTER, LIGHTGLUE, MUTUAL_NEAREST, PairMatcher, Patience
+from core.matched_pair import LIGHTGLUE, MUTUAL_NEAREST
+from core.matching.auto import GIVE_UP_AFTER, PairMatcher, Patience
 from core.matching.lightglue import LightGlueMatcher, rename
 from core.settings import make_settings
 from core.verification import Verifier

@@ -23,7 +23,7 @@ PLACES = RNG.uniform([0, 0], [WIDTH, HEIGHT], (KEYPOINTS, 2)).astype(np.float32)
 
 def made(counts: dict[tuple[int, int], int], step_px: float = 4.0) -> tuple[PairTable, list[np.ndarray]]:
     """Pairs with so many inliers; keypoint k is the same point in every frame, moved on by `step_px` a frame."""
-    keypoints = [PLACES + np.float32([step_px * frame, 0.0]) for frame in range(N)]
+    keypoints = [PLACES + np.array([step_px * frame, 0.0], np.float32) for frame in range(N)]
     inliers = [np.repeat(np.arange(n, dtype=np.uint32)[:, None], 2, axis=1) for n in counts.values()]
     m = len(counts)
     table = PairTable(

@@ -22,7 +22,7 @@ def _brute(first: np.ndarray, second: np.ndarray, ratio: float) -> list[tuple[in
 @pytest.mark.parametrize("sizes", [(700, 530), (3, 900), (1200, 2)])
 def test_agrees_with_the_definition(ratio: float, sizes: tuple[int, int]) -> None:
     rng = np.random.default_rng(5)
-    first, second = (unit_descriptors(rng.normal(size=(n, 16))) for n in sizes)
+    first, second = (unit_descriptors(rng.normal(size=(n, 16)).astype(np.float32)) for n in sizes)
     found = mutual_nearest(first, second, ratio)
     assert found.dtype == np.uint32
     assert [tuple(row) for row in found.tolist()] == _brute(first.numpy(), second.numpy(), ratio)
@@ -46,4 +46,4 @@ def test_nothing_matches_nothing(sizes: tuple[int, int]) -> None:
 
 def test_bytes_become_unit_rows() -> None:
     rows = unit_descriptors(np.array([[3, 4], [0, 200]], np.uint8))
-    np.testing.assert_allclose(rows.numpy(), [[0.6, 0.8], [0, 1]], atol=1e-6)
+    np.testing.assert_allclose(rows.numpy(), [[0.6, 0.8], [0.0, 1.0]], atol=1e-6)

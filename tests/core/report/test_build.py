@@ -12,6 +12,7 @@ import pytest
 from core.report.build import build_report, write_tables
 from core.report.csv_form import read_csv
 from core.report.record import RunRecord
+from core.states import RunState, TaskState
 from tests.core.making_record import failed_record, full_record, with_check
 
 COLUMNS = {
@@ -98,7 +99,7 @@ def test_a_run_without_a_model_keeps_every_detection_and_says_why() -> None:
 
 
 def test_a_refused_model_leaves_no_mapped_row() -> None:
-    vetoed = replace(full_record(), state="failed", reason="no_reconstruction")
+    vetoed = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
     report = build_report(vetoed)
     assert report.verdict == "refused"
     assert not [row for row in report.detections if row["outcome"] == "mapped"]
@@ -125,16 +126,21 @@ def test_verdict(record: RunRecord, verdict: str) -> None:
 def test_a_partial_run_keeps_what_was_mapped_before() -> None:
     full = full_record()
     tasks = [
-        replace(task, state="failed", reason="disk_full") if task.key == "gallery" else task for task in full.tasks
+        replace(task, state=TaskState.FAILED, reason="disk_full") if task.key == "gallery" else task
+        for task in full.tasks
     ]
-    report = build_report(replace(full, state="partial", tasks=tasks, failed_stage="gallery", reason="disk_full"))
+    report = build_report(
+        replace(full, state=RunState.PARTIAL, tasks=tasks, failed_stage="gallery", reason="disk_full")
+    )
     assert sum(row["outcome"] == "mapped" for row in report.detections) == 3
     assert report.summary["state"] == "partial"
 
 
 def test_a_cancelled_run_before_any_result() -> None:
     full = full_record()
-    report = build_report(replace(full, state="cancelled", tasks=[], tables=type(full.tables)(), reason="cancelled"))
+    report = build_report(
+        replace(full, state=RunState.CANCELLED, tasks=[], tables=type(full.tables)(), reason="cancelled")
+    )
     assert report.verdict == "refused"
     assert (report.frames, report.cases, report.detections) == ([], [], [])
 

@@ -17,7 +17,8 @@ from core.report.build import build_report, write_tables
 from core.report.csv_form import csv_line, escaped, read_csv, unescaped
 from core.settings import make_settings
 from core.stage import StageTask
-from core.stages import annotations, probe
+from core.stages import annotations as annotations_stage
+from core.stages import probe
 from core.timeline.clusters import cluster_detections
 from core.timeline.events import event_rows, with_defect_ids
 from tests.core.making_record import full_record
@@ -62,8 +63,9 @@ def test_numbers_are_no_text() -> None:
 @pytest.fixture(scope="module")
 def detections(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     """What the stages make of the labels."""
-    root, folders = tmp_path_factory.mktemp("stages"), {}
-    for key, run in (("probe", probe.run), ("annotations", annotations.run)):
+    root = tmp_path_factory.mktemp("stages")
+    folders: dict[str, Path] = {}
+    for key, run in (("probe", probe.run), ("annotations", annotations_stage.run)):
         (root / key).mkdir()
         run(StageTask(key, {}, make_settings(), dict(folders), {}, SAMPLE, LABELS, root / key))
         folders[key] = root / key

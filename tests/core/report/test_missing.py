@@ -10,6 +10,7 @@ import pytest
 from core.report.build import build_report
 from core.report.missing import AFTER_MODEL
 from core.report.record import RunRecord, TaskRecord
+from core.states import RunState, TaskState
 from tests.core.making_record import failed_record, full_record
 
 ORDER = ("undistort", "fuse", "mesh", "map_defects", "timeline", "gallery")
@@ -20,8 +21,8 @@ def broken(stage: str, reason: str, **more: Any) -> RunRecord:
     full = full_record()
     lost = ORDER[ORDER.index(stage) :]
     tasks = [task for task in full.tasks if task.stage not in lost]
-    tasks.append(TaskRecord(stage, "failed", reason=reason))
-    tasks += [TaskRecord(name, "skipped") for name in lost[1:]]
+    tasks.append(TaskRecord(stage, TaskState.FAILED, reason=reason))
+    tasks += [TaskRecord(name, TaskState.SKIPPED) for name in lost[1:]]
     tables = full.tables
     if "map_defects" in lost:
         tables = replace(tables, mapped_rows=None, timeline=[], defects=[])
@@ -57,8 +58,8 @@ def test_a_stage_that_fails_after_the_model_makes_the_result_suspect(
 
 def test_a_run_that_was_cancelled_after_its_model_is_suspect() -> None:
     full = full_record()
-    tasks = [replace(task, state="cancelled") if task.key == "gallery" else task for task in full.tasks]
-    record = replace(full, state="cancelled", reason="cancelled", tasks=tasks)
+    tasks = [replace(task, state=TaskState.CANCELLED) if task.key == "gallery" else task for task in full.tasks]
+    record = replace(full, state=RunState.CANCELLED, reason="cancelled", tasks=tasks)
     assert build_report(record).quality["verdict"] == "suspect"
     assert flags_of(record) == {"incomplete": "cancelled"}
 
@@ -85,17 +86,19 @@ def test_a_run_that_placed_nothing_is_told_unless_there_was_nothing_to_place() -
 
 def test_a_further_model_that_lost_its_surface_is_told_and_one_that_never_was_is_not() -> None:
     full = full_record()
-    model = TaskRecord("extend@1", "succeeded", facts={"registered_images": 9})
-    lost = [TaskRecord("fuse@1", "failed", reason="empty_cloud"), TaskRecord("mesh@1", "skipped")]
+    model = TaskRecord("extend@1", TaskState.SUCCEEDED, facts={"registered_images": 9})
+    lost = [TaskRecord("fuse@1", TaskState.FAILED, reason="empty_cloud"), TaskRecord("mesh@1", TaskState.SKIPPED)]
     record = replace(full, tasks=[*full.tasks, model, *lost])
     assert flags_of(record) == {"incomplete": "model 1, fuse: empty_cloud"}
     assert build_report(record).quality["verdict"] == "suspect"
-    never = replace(full, tasks=[*full.tasks, TaskRecord("extend@1", "failed", reason="no_reconstruction"), *lost[1:]])
+    never = replace(
+        full, tasks=[*full.tasks, TaskRecord("extend@1", TaskState.FAILED, reason="no_reconstruction"), *lost[1:]]
+    )
     assert build_report(never).quality["verdict"] == "ok"
 
 
 def test_without_a_model_the_run_is_refused_for_its_own_reasons() -> None:
-    vetoed = replace(full_record(), state="failed", reason="no_reconstruction")
+    vetoed = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
     for record in (failed_record(), vetoed):
         assert not {"incomplete", "no_surface", "nothing_mapped"} & set(flags_of(record))
 

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from core.flags import Verdict
 from core.json_files import write_json
 from core.report.load import load_tables, served_pieces
 from core.report.models import join_detections, join_lists
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
+from core.states import TaskState
 from core.timeline.numbering import Start
 from core.timeline.rows import EventRow
 from tests.core.making_record import full_record
@@ -91,7 +93,7 @@ def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
     facts = {"registered_images": 12, "points3D": 900, "mean_reprojection_error_px": 0.5, "checks": [check]}
     record = replace(
         record,
-        tasks=[*record.tasks, TaskRecord("extend@1", "succeeded", facts=facts)],
+        tasks=[*record.tasks, TaskRecord("extend@1", TaskState.SUCCEEDED, facts=facts)],
         tables=replace(record.tables, registered_further={1: [*free, taken]}),
     )
     models = {one["index"]: one["model"] for one in frame_rows(record)}
@@ -99,5 +101,5 @@ def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
     assert [models[index] for index in free] == [1] * len(free)
     flags = collect_flags(record)
     assert "model 1, frame 4" in [flag.where for flag in flags]
-    quality = build_quality(record, "ok", flags, case_rows(record), detection_rows(record, False))
+    quality = build_quality(record, Verdict.OK, flags, case_rows(record), detection_rows(record, False))
     assert [(one["model"], one["registered_images"]) for one in quality["models"]][-1] == (1, 12)

@@ -8,6 +8,7 @@ from core.graph import STAGES
 from core.report.build import build_report
 from core.report.summary import run_fingerprint, stage_state
 from core.settings import make_settings
+from core.states import TaskState
 from tests.core.making_record import failed_record, full_record
 
 
@@ -31,7 +32,7 @@ def test_stages_are_summed_over_tasks() -> None:
     ],
 )
 def test_state_of_a_stage(states: list[str], state: str) -> None:
-    assert stage_state(states) == state
+    assert stage_state([TaskState(one) for one in states]) == state
 
 
 def test_says_what_ran_with_what() -> None:

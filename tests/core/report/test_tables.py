@@ -11,7 +11,7 @@ from core.report.tables import write_csv
 
 
 def test_csv_is_rfc_4180(tmp_path: Path) -> None:
-    rows = [
+    rows: list[dict[str, object]] = [
         {"name": 'say "hi", now', "value": 0.1, "flag": True},
         {"name": "two\nlines", "value": None, "flag": False},
         {"name": "ü", "value": 1e-7, "flag": 3},

@@ -7,15 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+import pycolmap
 
 from core.features.io import FrameFeatures
 from core.matched_pair import MUTUAL_NEAREST, MatchedPair
 from core.settings import make_settings
-from core.verification import Verifier, camera_from_dict
+from core.sparse.cases import Case, CaseResult, run_case
+from core.verification import CameraFields, Verifier, camera_from_dict
 from core.viewgraph import PairTable, make_table, write_database, write_table
 
 WIDTH, HEIGHT, FOCAL = 640, 480, 320.0
-LENS = {
+LENS: CameraFields = {
     "model": "OPENCV_FISHEYE",
     "width": WIDTH,
     "height": HEIGHT,
@@ -70,7 +72,7 @@ def project(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """(n, 3) camera points to (n, 2) pixels of an equidistant lens; NaN behind the camera."""
     radius = np.linalg.norm(points[:, :2], axis=1)
     theta = np.arctan2(radius, points[:, 2])
-    xy = FOCAL * theta[:, None] * points[:, :2] / radius[:, None] + [WIDTH / 2, HEIGHT / 2]
+    xy: npt.NDArray[np.float64] = FOCAL * theta[:, None] * points[:, :2] / radius[:, None] + [WIDTH / 2, HEIGHT / 2]
     xy[points[:, 2] < 0.1] = np.nan
     return xy
 
@@ -98,10 +100,21 @@ def write_graph(folder: Path, scene: Scene, table: PairTable) -> Path:
     return folder
 
 
-def center_errors(model: object, scene: Scene) -> npt.NDArray[np.float64]:
+def model_of(case: Case) -> pycolmap.Reconstruction:
+    """The model of a case that has one."""
+    return found_in(run_case(case))
+
+
+def found_in(result: CaseResult) -> pycolmap.Reconstruction:
+    """The model of a result that has one."""
+    assert result.model is not None
+    return result.model
+
+
+def center_errors(model: pycolmap.Reconstruction, scene: Scene) -> npt.NDArray[np.float64]:
     """Distances of the registered camera centres to the true ones after the best similarity, sorted by image id."""
-    ids = sorted(model.reg_image_ids())  # type: ignore[attr-defined]
-    found = np.array([model.image(i).projection_center() for i in ids])  # type: ignore[attr-defined]
+    ids = sorted(model.reg_image_ids())
+    found = np.array([model.image(i).projection_center() for i in ids])
     truth = scene.centers[np.array(ids) - 1]
     a, b = found - found.mean(axis=0), truth - truth.mean(axis=0)
     u, s, vt = np.linalg.svd(b.T @ a)
@@ -113,4 +126,5 @@ def center_errors(model: object, scene: Scene) -> npt.NDArray[np.float64]:
 
 def _turn(yaw: float, pitch: float) -> npt.NDArray[np.float64]:
     cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
-    return np.array([[1, 0, 0], [0, cp, -sp], [0, sp, cp]]) @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    pitched = np.array([[1, 0, 0], [0, cp, -sp], [0, sp, cp]])
+    return np.asarray(pitched @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]]), np.float64)

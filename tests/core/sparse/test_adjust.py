@@ -9,49 +9,53 @@ import pytest
 from core.checks.stats import model_stats
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust, adjustment_options
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.lens_trial import MIN_IMAGES, judge_principal_point, try_lens
 from core.sparse.mapper import mapper_options, open_cache
-from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import HEIGHT, WIDTH, Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)
 OPTIONS = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
 
 
 @pytest.fixture(scope="module")
-def scene():
+def scene() -> Scene:
     return make_scene(36)
 
 
 @pytest.fixture(scope="module")
-def graph(scene, tmp_path_factory) -> Path:
+def graph(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_graph(tmp_path_factory.mktemp("adjust") / "graph", scene, view_graph(scene))
 
 
 @pytest.fixture(scope="module")
-def model(graph):
-    return run_case(Case(graph, 0, 36, SETTINGS, 0)).model
+def model(graph: Path) -> pycolmap.Reconstruction:
+    return model_of(Case(graph, 0, 36, SETTINGS, 0))
 
 
 @pytest.fixture(scope="module")
-def cache(graph):
+def cache(graph: Path) -> pycolmap.DatabaseCache:
     return open_cache(graph / "database.db")
 
 
-def disturbed(model, *, shift_px=(0.0, 0.0), points_su=0.0):
+def disturbed(
+    model: pycolmap.Reconstruction, *, shift_px: tuple[float, float] = (0.0, 0.0), points_su: float = 0.0
+) -> pycolmap.Reconstruction:
     """A copy with another principal point and moved points."""
     other = pycolmap.Reconstruction(model)
     camera = other.camera(1)
     params = np.array(camera.params)
     params[2:4] += shift_px
-    camera.params = params
+    camera.params = list(params)
     rng = np.random.default_rng(0)
     for point in other.points3D.values():
         point.xyz = point.xyz + points_su * rng.standard_normal(3)
     return other
 
 
-def test_a_disturbed_model_comes_back_and_the_input_stays(model, cache, scene):
+def test_a_disturbed_model_comes_back_and_the_input_stays(
+    model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache, scene: Scene
+) -> None:
     start = disturbed(model, points_su=0.03)
     before = model_stats(start).mean_reprojection_error_px
     result = adjust(start, cache, OPTIONS, refine_principal_point=False)
@@ -64,7 +68,9 @@ def test_a_disturbed_model_comes_back_and_the_input_stays(model, cache, scene):
     assert np.array(result.model.camera(1).params)[2:4].tolist() == [WIDTH / 2, HEIGHT / 2]
 
 
-def test_a_repeated_adjustment_gives_the_same_model(model, cache, tmp_path):
+def test_a_repeated_adjustment_gives_the_same_model(
+    model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache, tmp_path: Path
+) -> None:
     for name in ("one", "two"):
         (tmp_path / name).mkdir()
         adjust(model, cache, OPTIONS, refine_principal_point=True).model.write_binary(tmp_path / name)
@@ -72,35 +78,42 @@ def test_a_repeated_adjustment_gives_the_same_model(model, cache, tmp_path):
         assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
 
 
-def test_a_point_at_infinity_is_removed_before_errors_are_averaged(model, cache):
+def test_a_point_at_infinity_is_removed_before_errors_are_averaged(
+    model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache
+) -> None:
     start = pycolmap.Reconstruction(model)
     lost = min(start.point3D_ids())
     start.point3D(lost).xyz = np.array([1e150, 1e150, 1e150])
     assert adjust(start, cache, OPTIONS, refine_principal_point=False).error_after_px < 1.0
 
 
-def test_a_wrong_principal_point_is_found_again(model, cache, scene):
+def test_a_wrong_principal_point_is_found_again(
+    model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache, scene: Scene
+) -> None:
     start = adjust(disturbed(model, shift_px=(14.0, -9.0)), cache, OPTIONS, refine_principal_point=False).model
     result = adjust(start, cache, OPTIONS, refine_principal_point=True)
     assert (result.principal_point.refined, result.principal_point.reason) == (True, "kept")
     found = np.array(result.model.camera(1).params)[2:4]
     assert found == pytest.approx([WIDTH / 2, HEIGHT / 2], abs=3.0)
+    assert result.principal_point.sigma_px is not None
     assert max(result.principal_point.sigma_px) < 3.0
     assert result.error_after_px <= result.error_before_px
 
 
-def test_a_right_principal_point_stays_exactly(model, cache):
+def test_a_right_principal_point_stays_exactly(model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache) -> None:
     result = adjust(model, cache, OPTIONS, refine_principal_point=True)
     assert result.principal_point.reason == "insignificant"
     assert np.array(result.model.camera(1).params)[2:4].tolist() == [WIDTH / 2, HEIGHT / 2]
 
 
-def test_few_images_do_not_determine_a_principal_point(graph):
-    few = run_case(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0)).model
+def test_few_images_do_not_determine_a_principal_point(graph: Path) -> None:
+    few = model_of(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0))
     assert judge_principal_point(try_lens(few, adjustment_options(True, 1.0, 1))).reason == "few_images"
 
 
-def test_mismatches_move_cameras_less_when_they_count_less(model, cache, scene):
+def test_mismatches_move_cameras_less_when_they_count_less(
+    model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache, scene: Scene
+) -> None:
     start = pycolmap.Reconstruction(model)
     rng = np.random.default_rng(1)
     for image_id in start.reg_image_ids():
@@ -113,7 +126,7 @@ def test_mismatches_move_cameras_less_when_they_count_less(model, cache, scene):
     assert np.median(center_errors(robust, scene)) < np.median(center_errors(squares, scene))
 
 
-def test_a_narrow_motion_does_not_determine_a_principal_point(graph):
-    narrow = run_case(Case(graph, 0, 14, SETTINGS, 0)).model
+def test_a_narrow_motion_does_not_determine_a_principal_point(graph: Path) -> None:
+    narrow = model_of(Case(graph, 0, 14, SETTINGS, 0))
     found = judge_principal_point(try_lens(narrow, adjustment_options(True, 0.0, 1)))
     assert (found.refined, found.reason) == (False, "uncertain")

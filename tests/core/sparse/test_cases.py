@@ -14,7 +14,7 @@ from core.sparse.cases import Case, run_case
 from core.sparse.mapper import registered_names
 from core.stage import StageTask
 from core.stages import coarse, refine
-from tests.core.sparse.scene import FOCAL, Scene, center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import FOCAL, Scene, center_errors, found_in, make_scene, model_of, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)
 
@@ -37,9 +37,9 @@ def model_bytes(model: object, folder: Path) -> dict[str, bytes]:
 
 def test_a_window_maps_only_its_own_frames_and_right(graph: Path, scene: Scene) -> None:
     result = run_case(Case(graph, 4, 20, SETTINGS, 0))
-    assert registered_names(result.model) == [f"{i:04d}.jpg" for i in range(4, 20)]
+    assert registered_names(found_in(result)) == [f"{i:04d}.jpg" for i in range(4, 20)]
     assert (result.frames, result.models, result.start_mode, result.reason) == (16, 1, "scratch", "")
-    assert center_errors(result.model, scene).max() < 0.02
+    assert center_errors(found_in(result), scene).max() < 0.02
     assert 0.1 < result.stats.mean_reprojection_error_px < 0.6
 
 
@@ -60,11 +60,11 @@ def test_a_repeated_case_is_identical_to_the_bit(graph: Path, tmp_path: Path) ->
 
 
 def test_a_warm_case_drops_old_frames_and_registers_new_ones(graph: Path, scene: Scene) -> None:
-    start = run_case(Case(graph, 0, 14, SETTINGS, 0)).model
+    start = model_of(Case(graph, 0, 14, SETTINGS, 0))
     result = run_case(Case(graph, 6, 20, SETTINGS, 0), start)
     assert result.start_mode == "warm"
-    assert registered_names(result.model) == [f"{i:04d}.jpg" for i in range(6, 20)]
-    assert center_errors(result.model, scene).max() < 0.02
+    assert registered_names(found_in(result)) == [f"{i:04d}.jpg" for i in range(6, 20)]
+    assert center_errors(found_in(result), scene).max() < 0.02
     assert registered_names(start) == [f"{i:04d}.jpg" for i in range(14)]
 
 
@@ -75,20 +75,20 @@ def test_a_window_inside_its_start_keeps_all_frames(graph: Path) -> None:
 
 
 def test_a_wrong_start_is_replaced_by_one_from_scratch(graph: Path, scene: Scene) -> None:
-    start = run_case(Case(graph, 0, 8, SETTINGS, 0)).model
+    start = model_of(Case(graph, 0, 8, SETTINGS, 0))
     camera = start.camera(1)
-    camera.params = np.array([FOCAL * 1.6, FOCAL * 1.6, *camera.params[2:4], 0.3, 0.0, 0.0, 0.0])
+    camera.params = list(np.array([FOCAL * 1.6, FOCAL * 1.6, *camera.params[2:4], 0.3, 0.0, 0.0, 0.0]))
     result = run_case(Case(graph, 2, 9, SETTINGS, 0), start)
     assert result.start_mode == "warm_then_scratch"
     assert result.stats.registered_images == 7
-    assert center_errors(result.model, scene).max() < 0.02
+    assert center_errors(found_in(result), scene).max() < 0.02
 
 
 def test_colmap_as_it_is_finds_the_same_window(graph: Path, scene: Scene) -> None:
     thesis = MapperSettings(search_tracks=0, initial_pair="colmap", bundle_adjustment="colmap")
     result = run_case(Case(graph, 0, 10, thesis, 0))
     assert result.stats.registered_images == 10
-    assert center_errors(result.model, scene).max() < 0.02
+    assert center_errors(found_in(result), scene).max() < 0.02
 
 
 def test_a_turning_camera_has_no_parallax(tmp_path: Path) -> None:
@@ -152,9 +152,9 @@ def test_a_wrong_distortion_is_freed_when_the_model_stands(graph: Path, scene: S
     wrong = shutil.copytree(graph, tmp_path / "graph")
     with pycolmap.Database.open(wrong / "database.db") as database:
         camera = database.read_camera(1)
-        camera.params = np.array([*camera.params[:4], 0.06, 0.0, 0.0, 0.0])
+        camera.params = list(np.array([*camera.params[:4], 0.06, 0.0, 0.0, 0.0]))
         database.update_camera(camera)
     result = run_case(Case(wrong, 0, 16, SETTINGS, 0))
     assert not SETTINGS.refine_distortion
     assert result.stats.mean_reprojection_error_px < 0.6
-    assert center_errors(result.model, scene).max() < 0.02
+    assert center_errors(found_in(result), scene).max() < 0.02

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 import pycolmap
@@ -9,34 +10,34 @@ import pytest
 from core.checks.stats import ModelStats, model_stats
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.confirm import choose, confirmed_or_searched
 from core.sparse.extend import register_rest
-from core.stage import StageTask
+from core.stage import Facts, StageTask
 from core.stages import confirm as confirm_stage
 from core.stages import extend as extend_stage
-from tests.core.sparse.scene import center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)
 N_FRAMES = 20
 
 
 @pytest.fixture(scope="module")
-def scene():
+def scene() -> Scene:
     return make_scene(N_FRAMES)
 
 
 @pytest.fixture(scope="module")
-def graph(scene, tmp_path_factory) -> Path:
+def graph(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_graph(tmp_path_factory.mktemp("extend") / "graph", scene, view_graph(scene))
 
 
 @pytest.fixture(scope="module")
-def winner(graph):
-    return run_case(Case(graph, 4, 14, SETTINGS, 0)).model
+def winner(graph: Path) -> pycolmap.Reconstruction:
+    return model_of(Case(graph, 4, 14, SETTINGS, 0))
 
 
-def stats(images, points):
+def stats(images: int, points: int) -> ModelStats:
     return ModelStats(images, points, 1.0, 1.0, 5.0)
 
 
@@ -51,18 +52,20 @@ def stats(images, points):
         (None, "searched"),
     ],
 )
-def test_the_confirmed_model_is_kept_unless_clearly_weaker(confirmed, kept):
+def test_the_confirmed_model_is_kept_unless_clearly_weaker(confirmed: ModelStats | None, kept: str) -> None:
     assert choose(stats(220, 65087), confirmed) == kept
 
 
-def test_a_model_that_is_too_good_for_its_window_is_not_replaced(graph):
-    whole = run_case(Case(graph, 0, N_FRAMES, SETTINGS, 0)).model
+def test_a_model_that_is_too_good_for_its_window_is_not_replaced(graph: Path) -> None:
+    whole = model_of(Case(graph, 0, N_FRAMES, SETTINGS, 0))
     model, kept = confirmed_or_searched(Case(graph, 4, 14, SETTINGS, 0), whole)
     assert kept == "searched"
     assert model is whole
 
 
-def test_a_confirmed_model_that_is_called_wrong_is_not_gone_on_with(graph, winner):
+def test_a_confirmed_model_that_is_called_wrong_is_not_gone_on_with(
+    graph: Path, winner: pycolmap.Reconstruction
+) -> None:
     case = Case(graph, 4, 14, SETTINGS, 0)
     assert confirmed_or_searched(case, winner)[1] == "confirmed"
     model, kept = confirmed_or_searched(case, winner, is_wrong=lambda _: True)
@@ -70,21 +73,31 @@ def test_a_confirmed_model_that_is_called_wrong_is_not_gone_on_with(graph, winne
     assert model is winner
 
 
-def test_the_rest_of_the_frames_is_registered_on_both_sides(graph, winner, scene):
+def test_the_rest_of_the_frames_is_registered_on_both_sides(
+    graph: Path, winner: pycolmap.Reconstruction, scene: Scene
+) -> None:
     model = register_rest(graph, winner, N_FRAMES, SETTINGS, seed=0)
     assert sorted(model.reg_image_ids()) == list(range(1, N_FRAMES + 1))
     assert center_errors(model, scene).max() < 0.03
     assert winner.num_reg_images() == 10
 
 
-def run_stages(graph, winner, out, start_mode="warm", **options):
-    settings = make_settings("default", {"mapper.search_tracks": 150, "model.align_keypoints": False, **options})
+def run_stages(
+    graph: Path,
+    winner: pycolmap.Reconstruction,
+    out: Path,
+    start_mode: str = "warm",
+    options: Mapping[str, object] | None = None,
+) -> tuple[Facts, Facts]:
+    settings = make_settings(
+        "default", {"mapper.search_tracks": 150, "model.align_keypoints": False, **(options or {})}
+    )
     for name in ("reduce_refine/model", "confirm", "extend"):
         (out / name).mkdir(parents=True)
     winner.write_binary(out / "reduce_refine/model")
     reduced = {"best": "seg_000_0004_0014", "start": 4, "end": 14, "kind": "coarse", "start_mode": start_mode}
 
-    def task(key, inputs, facts):
+    def task(key: str, inputs: Mapping[str, Path], facts: Mapping[str, Facts]) -> StageTask:
         return StageTask(key, {}, settings, inputs, facts, Path("video"), None, out / key)
 
     confirmed = confirm_stage.run(
@@ -94,7 +107,9 @@ def run_stages(graph, winner, out, start_mode="warm", **options):
     return confirmed, extend_stage.run(task("extend", {"graph": graph, "confirm": out / "confirm"}, facts)).facts
 
 
-def test_the_stages_write_what_they_promise(graph, winner, tmp_path, scene):
+def test_the_stages_write_what_they_promise(
+    graph: Path, winner: pycolmap.Reconstruction, tmp_path: Path, scene: Scene
+) -> None:
     confirmed, extended = run_stages(graph, winner, tmp_path)
     assert (confirmed["kept"], confirmed["start_mode"], confirmed["registered_images"]) == ("confirmed", "scratch", 10)
     assert extended["registered_images"] == N_FRAMES
@@ -107,9 +122,9 @@ def test_the_stages_write_what_they_promise(graph, winner, tmp_path, scene):
     assert center_errors(model, scene).max() < 0.02
 
 
-def test_what_is_switched_off_is_not_done(graph, winner, tmp_path):
+def test_what_is_switched_off_is_not_done(graph: Path, winner: pycolmap.Reconstruction, tmp_path: Path) -> None:
     off = {"model.confirm": False, "model.register_rest": False, "model.final_adjustment": False}
-    confirmed, extended = run_stages(graph, winner, tmp_path, **off)
+    confirmed, extended = run_stages(graph, winner, tmp_path, "warm", off)
     assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "warm")
     assert extended["registered_images"] == 10
     assert extended["adjustment"] is None
@@ -119,8 +134,10 @@ def test_what_is_switched_off_is_not_done(graph, winner, tmp_path):
     assert model_stats(same[0]) == model_stats(same[1])
 
 
-def test_a_winner_from_scratch_has_nothing_to_confirm(graph, winner, tmp_path):
-    confirmed, _ = run_stages(graph, winner, tmp_path, "scratch", **{"model.final_adjustment": False})
+def test_a_winner_from_scratch_has_nothing_to_confirm(
+    graph: Path, winner: pycolmap.Reconstruction, tmp_path: Path
+) -> None:
+    confirmed, _ = run_stages(graph, winner, tmp_path, "scratch", {"model.final_adjustment": False})
     assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "scratch")
     same = [pycolmap.Reconstruction(tmp_path / name / "model") for name in ("reduce_refine", "confirm")]
     assert model_stats(same[0]) == model_stats(same[1])

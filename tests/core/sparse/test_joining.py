@@ -11,11 +11,11 @@ from scipy.spatial.transform import Rotation
 
 from core.settings import make_settings
 from core.sparse import joining
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.joining import Poses, fit_similarity, holds, join_rest
 from core.sparse.mapper import restrict_model
 from core.viewgraph import PairTable
-from tests.core.sparse.scene import Scene, center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 N, CUT = 40, 22
 SETTINGS = make_settings().mapper
@@ -27,7 +27,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scene, PairTable, Pa
     scene = make_scene(N, 900)
     table = view_graph(scene)
     graph = write_graph(tmp_path_factory.mktemp("join") / "graph", scene, table)
-    model = run_case(Case(graph, 0, CUT, SETTINGS, 0)).model
+    model = model_of(Case(graph, 0, CUT, SETTINGS, 0))
     return scene, table, graph, model
 
 
@@ -47,7 +47,7 @@ def test_the_rest_is_joined_through_shared_images(made: tuple[Scene, PairTable, 
 
 def test_nothing_left_over_is_nothing_to_do(made: tuple[Scene, PairTable, Path, Any]) -> None:
     _, table, graph, _ = made
-    whole = run_case(Case(graph, 0, N, SETTINGS, 0)).model
+    whole = model_of(Case(graph, 0, N, SETTINGS, 0))
     model, attempts = join_rest(graph, whole, table, N, SETTINGS, seed=0, is_wrong=lambda _: False)
     assert model is whole
     assert attempts == []

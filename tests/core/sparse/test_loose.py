@@ -4,21 +4,21 @@ import pycolmap
 import pytest
 
 from core.settings.groups import MapperSettings
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.loose import drop_faint_frames, drop_loose_ends
-from tests.core.sparse.scene import make_scene, view_graph, write_graph
+from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
 
 N, CUT = 24, 18
 
 
 @pytest.fixture(scope="module")
-def model(tmp_path_factory):
+def model(tmp_path_factory: pytest.TempPathFactory) -> pycolmap.Reconstruction:
     scene = make_scene(N)
     graph = write_graph(tmp_path_factory.mktemp("loose") / "graph", scene, view_graph(scene))
-    return run_case(Case(graph, 0, N, MapperSettings(), 0)).model
+    return model_of(Case(graph, 0, N, MapperSettings(), 0))
 
 
-def joined_by(model, count: int, cut: int = CUT):
+def joined_by(model: pycolmap.Reconstruction, count: int, cut: int = CUT) -> pycolmap.Reconstruction:
     """A copy in which so many points are seen on both sides of the cut."""
     work = pycolmap.Reconstruction(model)
     sides = {i: {e.image_id - 1 >= cut for e in point.track.elements} for i, point in work.points3D.items()}
@@ -27,17 +27,17 @@ def joined_by(model, count: int, cut: int = CUT):
     return work
 
 
-def frames(model) -> list[int]:
+def frames(model: pycolmap.Reconstruction) -> list[int]:
     return sorted(image_id - 1 for image_id in model.reg_image_ids())
 
 
-def test_a_whole_model_stays_as_it_is(model):
+def test_a_whole_model_stays_as_it_is(model: pycolmap.Reconstruction) -> None:
     same, dropped = drop_loose_ends(model, N)
     assert same is model
     assert dropped == []
 
 
-def test_the_smaller_side_of_a_weak_cut_is_taken_off(model):
+def test_the_smaller_side_of_a_weak_cut_is_taken_off(model: pycolmap.Reconstruction) -> None:
     work = joined_by(model, 12)
     left, dropped = drop_loose_ends(work, N)
     assert dropped == list(range(CUT, N))
@@ -47,7 +47,7 @@ def test_the_smaller_side_of_a_weak_cut_is_taken_off(model):
     assert left.num_points3D() > 100
 
 
-def test_what_is_out_of_order_stays_with_what_it_sees(model):
+def test_what_is_out_of_order_stays_with_what_it_sees(model: pycolmap.Reconstruction) -> None:
     """The frames from 18 on are out of order and see what the frames before them see."""
     _, dropped = drop_loose_ends(joined_by(model, 0, cut=5), CUT)
     assert set(range(4)) <= set(dropped) <= set(range(10))
@@ -55,7 +55,7 @@ def test_what_is_out_of_order_stays_with_what_it_sees(model):
     assert set(range(14, N)) <= set(dropped) <= set(range(8, N))
 
 
-def thinned(model, frame: int, count: int):
+def thinned(model: pycolmap.Reconstruction, frame: int, count: int) -> pycolmap.Reconstruction:
     """A copy in which a frame sees so many points."""
     work = pycolmap.Reconstruction(model)
     points = work.image(frame + 1).points2D
@@ -64,7 +64,7 @@ def thinned(model, frame: int, count: int):
     return work
 
 
-def test_a_frame_that_sees_next_to_nothing_is_taken_off_though_no_cut_is_weak(model):
+def test_a_frame_that_sees_next_to_nothing_is_taken_off_though_no_cut_is_weak(model: pycolmap.Reconstruction) -> None:
     work = thinned(model, 10, 25)
     _, cut = drop_loose_ends(work, N)
     assert cut == []
@@ -75,7 +75,7 @@ def test_a_frame_that_sees_next_to_nothing_is_taken_off_though_no_cut_is_weak(mo
     assert all(element.image_id != 11 for point in left.points3D.values() for element in point.track.elements)
 
 
-def test_frames_that_see_what_is_typical_stay(model):
+def test_frames_that_see_what_is_typical_stay(model: pycolmap.Reconstruction) -> None:
     same, dropped = drop_faint_frames(model)
     assert same is model
     assert dropped == []
@@ -83,7 +83,7 @@ def test_frames_that_see_what_is_typical_stay(model):
     assert dropped == []
 
 
-def test_a_model_with_few_points_everywhere_keeps_its_frames(model):
+def test_a_model_with_few_points_everywhere_keeps_its_frames(model: pycolmap.Reconstruction) -> None:
     poor = model
     for frame in range(N):
         poor = thinned(poor, frame, 25)

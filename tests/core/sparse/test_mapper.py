@@ -21,7 +21,7 @@ def database(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def model(database: Path) -> object:
+def model(database: Path) -> pycolmap.Reconstruction:
     options = mapper_options(THESIS, threads=1, seed=0, tuned=True)
     return map_images(open_cache(database), options, pairs=[(4, 9)])[0]
 
@@ -50,7 +50,7 @@ def test_a_bad_initial_pair_is_passed_over(database: Path) -> None:
     assert options.init_image_id1 == -1
 
 
-def test_the_best_model_is_chosen_by_score_not_by_place(model: object) -> None:
+def test_the_best_model_is_chosen_by_score_not_by_place(model: pycolmap.Reconstruction) -> None:
     smaller = restrict_model(model, ["0000.jpg", "0001.jpg", "0002.jpg"])
     fewer_points = pycolmap.Reconstruction(model)
     fewer_points.delete_point3D(next(iter(fewer_points.point3D_ids())))
@@ -58,7 +58,7 @@ def test_the_best_model_is_chosen_by_score_not_by_place(model: object) -> None:
     assert best_model([]) is None
 
 
-def test_restricting_leaves_the_source_alone(model: object) -> None:
+def test_restricting_leaves_the_source_alone(model: pycolmap.Reconstruction) -> None:
     names = ["0002.jpg", "0003.jpg", "0004.jpg"]
     part = restrict_model(model, names)
     assert registered_names(part) == names
@@ -66,7 +66,7 @@ def test_restricting_leaves_the_source_alone(model: object) -> None:
     assert all(point.track.length() <= 3 for point in part.points3D.values())
 
 
-def test_points_at_infinity_do_not_count(model: object) -> None:
+def test_points_at_infinity_do_not_count(model: pycolmap.Reconstruction) -> None:
     before = model_stats(model)
     broken = pycolmap.Reconstruction(model)
     lost = sorted(broken.point3D_ids())[:2]
@@ -78,7 +78,7 @@ def test_points_at_infinity_do_not_count(model: object) -> None:
     assert model_stats(pycolmap.Reconstruction()).score == (0, 0)
 
 
-def test_mapping_goes_on_with_held_poses(database: Path, model: object) -> None:
+def test_mapping_goes_on_with_held_poses(database: Path, model: pycolmap.Reconstruction) -> None:
     start = restrict_model(model, [f"{i:04d}.jpg" for i in range(3, 9)])
     options = mapper_options(THESIS, threads=1, seed=0, tuned=True)
     options.fix_existing_frames = True

@@ -10,12 +10,12 @@ import pycolmap
 import pytest
 
 from core.settings import make_settings
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.pieces import MIN_FRAMES, find_pieces, groups_of
 from core.stage import StageTask
 from core.stages import pieces as stage
 from core.viewgraph import PairTable
-from tests.core.sparse.scene import Scene, center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 N, CUT = 36, 20
 
@@ -47,7 +47,9 @@ def broken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scene, PairTable, 
     return scene, table, write_graph(tmp_path_factory.mktemp("pieces") / "graph", scene, table)
 
 
-def pieces(graph: Path, table: PairTable, taken: range, *, limit: int = 2, wrong: bool = False) -> list[object]:
+def pieces(
+    graph: Path, table: PairTable, taken: range, *, limit: int = 2, wrong: bool = False
+) -> list[pycolmap.Reconstruction]:
     return find_pieces(
         graph,
         table,
@@ -65,7 +67,7 @@ def test_the_other_side_of_a_break_is_a_model_of_its_own(broken: tuple[Scene, Pa
     scene, table, graph = broken
     found = pieces(graph, table, range(CUT))
     assert len(found) == 1
-    ids = sorted(found[0].reg_image_ids())  # type: ignore[attr-defined]
+    ids = sorted(found[0].reg_image_ids())
     assert ids == list(range(CUT + 1, N + 1))
     assert center_errors(found[0], scene).max() < 0.05
 
@@ -73,7 +75,7 @@ def test_the_other_side_of_a_break_is_a_model_of_its_own(broken: tuple[Scene, Pa
 def test_frames_of_an_earlier_model_stay_with_it(broken: tuple[Scene, PairTable, Path]) -> None:
     _, table, graph = broken
     found = pieces(graph, table, range(N - 2, N))
-    assert [len(list(model.reg_image_ids())) for model in found] == [CUT, N - 2 - CUT]  # type: ignore[attr-defined]
+    assert [len(list(model.reg_image_ids())) for model in found] == [CUT, N - 2 - CUT]
     assert len(pieces(graph, table, range(N - 2, N), limit=1)) == 1
 
 
@@ -90,7 +92,7 @@ def test_weak_and_vetoed_pieces_are_none(broken: tuple[Scene, PairTable, Path]) 
 
 def test_the_stage_writes_what_the_final_model_lacks(broken: tuple[Scene, PairTable, Path], tmp_path: Path) -> None:
     _, _, graph = broken
-    first = run_case(Case(graph, 0, CUT, make_settings().mapper, 0)).model
+    first = model_of(Case(graph, 0, CUT, make_settings().mapper, 0))
     (tmp_path / "extend/model").mkdir(parents=True)
     first.write_binary(tmp_path / "extend/model")
     out = tmp_path / "out"

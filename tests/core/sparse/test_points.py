@@ -3,40 +3,43 @@ from __future__ import annotations
 import numpy as np
 import pycolmap
 import pytest
+from numpy.typing import NDArray
 
 from core.settings.groups import MapperSettings
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.points import Observations, errors_px, move_points, observe
 from core.sparse.trimming import set_lens, solve
-from tests.core.sparse.scene import make_scene, view_graph, write_graph
+from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
+
+F64 = NDArray[np.float64]
 
 DISTORTION = {1: [0.05], 2: [0.05, -0.02], 4: [0.05, -0.02, 0.01, -0.003]}
 OFF = 0.02
 
 
 @pytest.fixture(scope="module")
-def mapped(tmp_path_factory):
+def mapped(tmp_path_factory: pytest.TempPathFactory) -> pycolmap.Reconstruction:
     """A model of 12 images."""
     scene = make_scene(12)
     graph = write_graph(tmp_path_factory.mktemp("points") / "graph", scene, view_graph(scene))
-    return run_case(Case(graph, 0, 12, MapperSettings(search_tracks=0), 0)).model
+    return model_of(Case(graph, 0, 12, MapperSettings(search_tracks=0), 0))
 
 
 @pytest.fixture(params=[1, 2, 4])
-def disturbed(request, mapped):
+def disturbed(request: pytest.FixtureRequest, mapped: pycolmap.Reconstruction) -> pycolmap.Reconstruction:
     """The model with another lens, whose points are not where their rays meet."""
     model = pycolmap.Reconstruction(mapped)
     set_lens(model, request.param)
     params = np.array(model.camera(1).params)
     params[model.camera(1).extra_params_idxs()] = DISTORTION[request.param]
-    model.camera(1).params = params
+    model.camera(1).params = list(params)
     rng = np.random.default_rng(0)
     for point in model.points3D.values():
         point.xyz = point.xyz + OFF * rng.normal(size=3)
     return model
 
 
-def adjusted_by_colmap(model, loss_px):
+def adjusted_by_colmap(model: pycolmap.Reconstruction, loss_px: float) -> pycolmap.Reconstruction:
     found = pycolmap.Reconstruction(model)
     options = pycolmap.BundleAdjustmentOptions()
     options.print_summary = False
@@ -50,22 +53,29 @@ def adjusted_by_colmap(model, loss_px):
     return found
 
 
-def places(model, seen):
+def places(model: pycolmap.Reconstruction, seen: Observations) -> F64:
     return np.array([model.point3D(int(i)).xyz for i in seen.point_ids])
 
 
-def costs(model, seen):
+def pixel(image: pycolmap.Image, place: F64) -> F64:
+    """(2,) where an image sees a place that is before it."""
+    seen = image.project_point(place)
+    assert seen is not None
+    return seen
+
+
+def costs(model: pycolmap.Reconstruction, seen: Observations) -> F64:
     """Cauchy's loss of every point, its scale 1 px, by COLMAP's projection."""
     found = []
     for point_id in seen.point_ids.tolist():
         point = model.point3D(point_id)
         images = [(model.image(e.image_id), e.point2D_idx) for e in point.track.elements]
-        off = [image.project_point(point.xyz) - image.point2D(index).xy for image, index in images]
+        off = [pixel(image, point.xyz) - image.point2D(index).xy for image, index in images]
         found.append(np.log1p((np.array(off) ** 2).sum(axis=1)).sum())
     return np.array(found)
 
 
-def test_errors_are_those_of_colmap(disturbed):
+def test_errors_are_those_of_colmap(disturbed: pycolmap.Reconstruction) -> None:
     seen = observe(disturbed)
     disturbed.update_point_3d_errors()
     told = [disturbed.point3D(int(i)).error for i in seen.point_ids]
@@ -73,7 +83,7 @@ def test_errors_are_those_of_colmap(disturbed):
     assert seen.lengths.tolist() == [disturbed.point3D(int(i)).track.length() for i in seen.point_ids]
 
 
-def test_points_end_where_a_bundle_adjuster_puts_them(disturbed):
+def test_points_end_where_a_bundle_adjuster_puts_them(disturbed: pycolmap.Reconstruction) -> None:
     model, seen = pycolmap.Reconstruction(disturbed), observe(disturbed)
     errors = move_points(model, seen, 1.0)
     assert errors == pytest.approx(errors_px(model, seen))
@@ -89,7 +99,7 @@ def test_points_end_where_a_bundle_adjuster_puts_them(disturbed):
         assert model.image(image_id).cam_from_world() == disturbed.image(image_id).cam_from_world()
 
 
-def test_one_observation_that_is_off_hardly_moves_a_point(mapped):
+def test_one_observation_that_is_off_hardly_moves_a_point(mapped: pycolmap.Reconstruction) -> None:
     model = pycolmap.Reconstruction(mapped)
     point_id = max(model.point3D_ids(), key=lambda i: model.point3D(i).track.length())
     move_points(model, observe(model), 1.0)
@@ -103,7 +113,7 @@ def test_one_observation_that_is_off_hardly_moves_a_point(mapped):
 
 
 @pytest.mark.parametrize("place", ["a camera's centre", "infinity", "behind", "on the axis"])
-def test_a_point_in_an_odd_place_hurts_no_other(mapped, place):
+def test_a_point_in_an_odd_place_hurts_no_other(mapped: pycolmap.Reconstruction, place: str) -> None:
     model = pycolmap.Reconstruction(mapped)
     seen = observe(model)
     expected = pycolmap.Reconstruction(model)
@@ -122,7 +132,7 @@ def test_a_point_in_an_odd_place_hurts_no_other(mapped, place):
         assert places(model, seen)[0] == pytest.approx(places(expected, seen)[0], abs=1e-4)
 
 
-def test_points_are_taken_while_an_image_needs_them(mapped):
+def test_points_are_taken_while_an_image_needs_them(mapped: pycolmap.Reconstruction) -> None:
     xy = np.zeros((7, 2))
     image = np.array([0, 1, 0, 0, 1, 1, 2])
     seen = Observations(np.array([3, 5, 8, 9]), np.array([0, 2, 4, 5, 7]), np.array([1, 2, 4]), image, xy)

@@ -10,11 +10,11 @@ from core.errors import NoReconstruction, StageFailed
 from core.roi import Crop
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
-from core.sparse.cases import Case, run_case
+from core.sparse.cases import Case
 from core.sparse.reduce import reduce_cases, reduce_refined
 from core.stage import StageTask
 from core.stages import reduce_coarse, reduce_refine
-from tests.core.sparse.scene import HEIGHT, WIDTH, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import HEIGHT, WIDTH, make_scene, model_of, view_graph, write_graph
 
 
 def row(name: str, registered: int, points: int, **more: Any) -> dict[str, Any]:
@@ -140,7 +140,7 @@ def test_the_stage_counts_the_detections_of_every_model(tmp_path: Path) -> None:
     graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
     facts, inputs = {}, {}
     for key, start, end in (("coarse/seg_000", 0, 13), ("refine/refine_000", 12, 20)):
-        model = run_case(Case(graph, start, end, MapperSettings(), 0)).model
+        model = model_of(Case(graph, start, end, MapperSettings(), 0))
         inputs[key] = tmp_path / key
         (inputs[key] / "model").mkdir(parents=True)
         model.write_binary(inputs[key] / "model")

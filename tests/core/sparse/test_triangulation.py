@@ -14,7 +14,7 @@ CENTERS = np.array([[0.0, 0, 0], [0.4, 0, 0], [0.8, 0.1, 0], [1.2, 0, 0.1]])
 POINTS = np.array([[0.2, 0.1, 3.0], [1.0, -0.3, 4.0], [0.5, 0.5, 500.0]])
 
 
-def setting(keypoints: list[np.ndarray]) -> tuple[object, Frames]:
+def setting(keypoints: list[np.ndarray]) -> tuple[pycolmap.Reconstruction, Frames]:
     """A model with the poses `CENTERS`, unturned, and its frames."""
     camera = camera_from_dict(LENS)
     model = pycolmap.Reconstruction()
@@ -73,7 +73,7 @@ def test_images_without_pose_take_no_part() -> None:
 def test_poses_and_lens_carry_over_without_points() -> None:
     model, frames = setting(seen())
     add_track_points(model, tracks_of([whole(0)]), frames)
-    model.camera(1).params = np.array([333.0, 334.0, *model.camera(1).params[2:]])
+    model.camera(1).params = list(np.array([333.0, 334.0, *model.camera(1).params[2:]]))
     cache = pycolmap.DatabaseCache()
     cache.add_camera(frames.camera)
     rig = pycolmap.Rig(rig_id=1)

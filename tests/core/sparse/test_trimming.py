@@ -1,17 +1,30 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pycolmap
 import pytest
 
 from core.settings.groups import MapperSettings
-from core.sparse.adjust import adjust
-from core.sparse.cases import Case, run_case
+from core.sparse.adjust import Adjustment, adjust
+from core.sparse.cases import Case
 from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.trimming import MIN_LENGTH, MIN_PER_IMAGE, keep_agreeing, set_lens
-from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import (
+    FOCAL,
+    HEIGHT,
+    WIDTH,
+    Scene,
+    center_errors,
+    make_scene,
+    model_of,
+    view_graph,
+    write_graph,
+)
+
+Adjusted = tuple[float, Scene, pycolmap.Reconstruction, pycolmap.DatabaseCache, dict[bool, Adjustment]]
 
 SETTINGS = MapperSettings(search_tracks=0)
 OPTIONS = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
@@ -19,21 +32,21 @@ HIGHLIGHTS, NONE = 0.04, 0.0
 
 
 @pytest.fixture(scope="module", params=[HIGHLIGHTS, NONE], ids=["highlights", "metal"])
-def case(request, tmp_path_factory):
+def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Adjusted:
     """The scene, its model before and the adjustments without and with the choice of tracks."""
     scene = make_scene(36, drift=request.param)
     graph = write_graph(tmp_path_factory.mktemp("trimming") / "graph", scene, view_graph(scene))
-    model = run_case(Case(graph, 0, 36, SETTINGS, 0)).model
+    model = model_of(Case(graph, 0, 36, SETTINGS, 0))
     cache = open_cache(graph / "database.db")
     done = {on: adjust(model, cache, OPTIONS, refine_principal_point=False, trim_tracks=on) for on in (False, True)}
     return request.param, scene, model, cache, done
 
 
-def focal(model) -> float:
+def focal(model: pycolmap.Reconstruction) -> float:
     return model.camera(1).mean_focal_length()
 
 
-def test_highlights_bend_all_tracks_but_not_those_that_agree(case):
+def test_highlights_bend_all_tracks_but_not_those_that_agree(case: Adjusted) -> None:
     drift, scene, _, _, done = case
     whole, part = done[False], done[True]
     assert whole.trimming is None
@@ -44,12 +57,13 @@ def test_highlights_bend_all_tracks_but_not_those_that_agree(case):
     assert straight < 0.0015  # without highlights this is what fewer tracks cost: all of them reach 0.0005
     assert abs(part.model.camera(1).params[4]) < 0.003
     assert focal(part.model) == pytest.approx(FOCAL, rel=0.005)
+    assert part.trimming is not None
     assert focal(part.model) == pytest.approx(part.trimming.focal_after_px)
     assert part.model.num_reg_images() == whole.model.num_reg_images()
     assert part.model.num_points3D() > 0.9 * whole.model.num_points3D()
 
 
-def test_the_kept_tracks_are_those_of_what_does_not_move(case):
+def test_the_kept_tracks_are_those_of_what_does_not_move(case: Adjusted) -> None:
     drift, scene, _, _, done = case
     model = pycolmap.Reconstruction(done[True].model)
     before = {point_id: still(model.point3D(point_id), scene) for point_id in model.point3D_ids()}
@@ -58,12 +72,14 @@ def test_the_kept_tracks_are_those_of_what_does_not_move(case):
     after = [before[point_id] for point_id in model.point3D_ids()]
     if drift:
         assert np.mean(after) > 0.9 > 2 * np.mean(list(before.values()))
-    assert 0.1 < done[True].trimming.median_error_px < 0.6  # the keypoints' noise is 0.3 px on each axis
+    trimming = done[True].trimming
+    assert trimming is not None
+    assert 0.1 < trimming.median_error_px < 0.6  # the keypoints' noise is 0.3 px on each axis
     counts = Counter(e.image_id for point in model.points3D.values() for e in point.track.elements)
     assert min(counts[image_id] for image_id in model.reg_image_ids()) >= MIN_PER_IMAGE
 
 
-def test_an_image_that_only_short_tracks_see_keeps_those(case):
+def test_an_image_that_only_short_tracks_see_keeps_those(case: Adjusted) -> None:
     model = pycolmap.Reconstruction(case[2])
     image_id = max(model.reg_image_ids())
     tracks = [[(e.image_id, e.point2D_idx) for e in point.track.elements] for point in model.points3D.values()]
@@ -78,12 +94,12 @@ def test_an_image_that_only_short_tracks_see_keeps_those(case):
     assert all(point.track.length() < MIN_LENGTH for point in held)
 
 
-def still(point, scene) -> bool:
+def still(point: pycolmap.Point3D, scene: Scene) -> bool:
     element = point.track.elements[0]
     return int(scene.point[element.image_id - 1][element.point2D_idx]) % 2 == 0
 
 
-def test_the_choice_of_tracks_repeats_to_the_last_bit(case, tmp_path):
+def test_the_choice_of_tracks_repeats_to_the_last_bit(case: Adjusted, tmp_path: Path) -> None:
     _, _, model, cache, done = case
     again = adjust(model, cache, OPTIONS, refine_principal_point=False, trim_tracks=True)
     for name, found in (("one", done[True]), ("two", again)):
@@ -93,22 +109,22 @@ def test_the_choice_of_tracks_repeats_to_the_last_bit(case, tmp_path):
         assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
 
 
-def test_a_principal_point_that_is_off_is_found_through_the_kept_tracks(tmp_path):
+def test_a_principal_point_that_is_off_is_found_through_the_kept_tracks(tmp_path: Path) -> None:
     scene = make_scene(36, 2400)
     graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
-    start = run_case(Case(graph, 0, 36, SETTINGS, 0)).model
+    start = model_of(Case(graph, 0, 36, SETTINGS, 0))
     params = np.array(start.camera(1).params)
     params[2:4] += (14.0, -9.0)
-    start.camera(1).params = params
+    start.camera(1).params = list(params)
     cache = open_cache(graph / "database.db")
     found = adjust(start, cache, OPTIONS, refine_principal_point=True, trim_tracks=True)
     assert (found.principal_point.refined, found.principal_point.reason) == (True, "kept")
     assert np.array(found.model.camera(1).params)[2:4] == pytest.approx([WIDTH / 2, HEIGHT / 2], abs=3.0)
 
 
-def test_the_lens_has_as_many_terms_as_it_is_given(case):
+def test_the_lens_has_as_many_terms_as_it_is_given(case: Adjusted) -> None:
     model = pycolmap.Reconstruction(case[2])
-    model.camera(1).params = np.array([300.0, 310.0, 320.0, 240.0, 0.1, 0.02, 0.003, 0.0004])
+    model.camera(1).params = list(np.array([300.0, 310.0, 320.0, 240.0, 0.1, 0.02, 0.003, 0.0004]))
     set_lens(model, 2)
     assert (model.camera(1).model.name, list(model.camera(1).params)) == (
         "RADIAL_FISHEYE",

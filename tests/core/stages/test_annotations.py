@@ -11,7 +11,8 @@ import pytest
 from core.report.build import build_report
 from core.settings import make_settings
 from core.stage import StageTask
-from core.stages import annotations, probe
+from core.stages import annotations as annotations_stage
+from core.stages import probe
 from tests.core.making_record import full_record
 
 INPUTS = Path(__file__).parents[2] / "data" / "inputs"
@@ -29,7 +30,7 @@ def quality_after(probed: Path, out: Path, convention: str) -> dict[str, Any]:
     """`quality.json` of a sound run whose annotations stage read these keys."""
     settings = make_settings(options={"input.time_convention": convention})
     file = INPUTS / "frames_few.json"
-    facts = annotations.run(StageTask("annotations", {}, settings, {"probe": probed}, {}, VIDEO, file, out)).facts
+    facts = annotations_stage.run(StageTask("annotations", {}, settings, {"probe": probed}, {}, VIDEO, file, out)).facts
     record = full_record()
     tasks = [replace(task, facts=facts) if task.key == "annotations" else task for task in record.tasks]
     return build_report(replace(record, tasks=tasks)).quality

@@ -31,7 +31,7 @@ def _task(
 ) -> StageTask:
     out.mkdir(parents=True, exist_ok=True)
     settings = make_settings(options={**OPTIONS, **(options or {})})
-    args = {name: more.pop(name) for name in ("start", "end") if name in more}
+    args: dict[str, Any] = {name: more.pop(name) for name in ("start", "end") if name in more}
     return StageTask(key, args, settings, inputs, {}, Path("video.mp4"), None, out, **more)
 
 

@@ -48,7 +48,7 @@ def exported(folder: Path) -> list[dict[str, Any]]:
 )
 def test_every_frame_of_the_film_is_exported_from_its_own_stream(
     video: str, frames: int, said: list[str], tmp_path: Path
-):
+) -> None:
     facts = stages(tmp_path, video)
     assert (facts["probe"]["n_frames"], facts["frames"]["n_frames"]) == (frames, frames)
     assert codes(facts["probe"]) == said
@@ -61,17 +61,18 @@ def test_every_frame_of_the_film_is_exported_from_its_own_stream(
     images = tmp_path / "results" / "frames" / "images"
     for row in rows[::11]:
         image = cv2.imread(str(images / f"{row['index']:04d}.jpg"))
+        assert image is not None
         assert np.abs(image[..., ::-1].astype(int) - shown[row["source_index"]].astype(int)).mean() < 3
 
 
-def test_the_result_names_the_stream_and_takes_another_when_told(tmp_path: Path):
+def test_the_result_names_the_stream_and_takes_another_when_told(tmp_path: Path) -> None:
     (flag,) = stages(tmp_path, "twov.mp4")["probe"]["flags"]
     assert flag["where"] == ("stream 1 of: stream 0 (mjpeg, 160x120, 4 frames); stream 1 (h264, 480x360, 48 frames)")
     told = stages(tmp_path / "told", "twov.mp4", input__video_stream=0, roi__y1=1)
     assert (told["probe"]["width"], told["frames"]["n_frames"]) == (160, 4)
 
 
-def test_keys_of_a_joined_recording_find_their_frames(tmp_path: Path):
+def test_keys_of_a_joined_recording_find_their_frames(tmp_path: Path) -> None:
     facts = stages(tmp_path, "concat_disc.ts", "k96.json")
     assert facts["annotations"]["n_without_frame"] == 0
     (flag,) = facts["probe"]["flags"]
@@ -82,7 +83,7 @@ def test_keys_of_a_joined_recording_find_their_frames(tmp_path: Path):
     assert [round(row.time_s * 12) for row in table.rows] == list(range(96))
 
 
-def test_facts_and_files_name_the_same_part_of_the_picture(tmp_path: Path):
+def test_facts_and_files_name_the_same_part_of_the_picture(tmp_path: Path) -> None:
     facts = stages(tmp_path, "kvz.mp4", roi__x0=0.1, roi__y0=0.2, roi__x1=0.9, roi__y1=0.75)
     assert facts["frames"]["crop"] == [48, 72, 432, 270]
     assert (facts["frames"]["source_width"], facts["frames"]["source_height"]) == (480, 360)
@@ -91,7 +92,7 @@ def test_facts_and_files_name_the_same_part_of_the_picture(tmp_path: Path):
 
 
 @pytest.mark.parametrize("video", ["d_x265_rand.mp4", "d_x264g12_rand.mp4"])
-def test_lost_frames_refuse_the_video_until_it_is_allowed_and_are_named_then(video: str, tmp_path: Path):
+def test_lost_frames_refuse_the_video_until_it_is_allowed_and_are_named_then(video: str, tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"4 frames lost after frame 18 at 1\.500 s"):
         stages(tmp_path, video)
     facts = stages(tmp_path / "allowed", video, input__allow_truncated=True)

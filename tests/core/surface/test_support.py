@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,18 +26,18 @@ def _grid(n: int = 21, step: float = 0.1) -> Mesh:
     return Mesh(vertices, faces.astype(np.int32), colors=np.full((n * n, 3), 9, np.uint8))
 
 
-def test_spacing_of_a_grid_is_its_step():
+def test_spacing_of_a_grid_is_its_step() -> None:
     assert point_spacing(_grid().vertices) == pytest.approx(0.1)
     assert point_spacing(np.zeros((1, 3))) == 0.0
 
 
-def test_support_falls_from_one_to_zero_and_is_half_at_the_limit():
+def test_support_falls_from_one_to_zero_and_is_half_at_the_limit() -> None:
     values = support(np.array([0.0, 0.1, 0.75, 1.5, 9.0]), 0.1, 7.5)
     np.testing.assert_allclose(values, [1, 1, 0.5, 0, 0], atol=1e-6)
     assert not support(np.zeros(3), 0.0, 7.5).any()
 
 
-def test_only_what_the_cloud_supports_is_kept():
+def test_only_what_the_cloud_supports_is_kept() -> None:
     mesh = _grid()
     cloud = Mesh(mesh.vertices[mesh.vertices[:, 0] < 0.65])
     settings = make_settings("default", {"mesh.support_spacings": 2.0}).mesh
@@ -50,7 +51,7 @@ def test_only_what_the_cloud_supports_is_kept():
     assert surface.kept.colors is not None
 
 
-def test_keep_unsupported_keeps_all_with_the_same_property():
+def test_keep_unsupported_keeps_all_with_the_same_property() -> None:
     mesh = _grid()
     cloud = Mesh(mesh.vertices[:63])
     settings = make_settings("default", {"mesh.keep_unsupported": True}).mesh
@@ -59,7 +60,7 @@ def test_keep_unsupported_keeps_all_with_the_same_property():
     assert surface.kept.extra["support"].min() < 0.5
 
 
-def test_largest_component_drops_the_others():
+def test_largest_component_drops_the_others() -> None:
     mesh = _grid()
     gap = np.abs(mesh.vertices[:, 0] - 0.6) > 0.05
     parts = keep_vertices(mesh, gap)
@@ -69,7 +70,7 @@ def test_largest_component_drops_the_others():
     assert len(surface.kept.faces) == len(kept.faces)
 
 
-def test_cloud_far_away_supports_nothing():
+def test_cloud_far_away_supports_nothing() -> None:
     mesh = _grid()
     far = Mesh(np.add(mesh.vertices, [0, 0, 50.0]))
     with pytest.raises(StageFailed) as caught:
@@ -77,7 +78,7 @@ def test_cloud_far_away_supports_nothing():
     assert caught.value.code == "empty_mesh"
 
 
-def test_mesh_stage_meets_the_sphere_and_cuts_what_is_invented(tmp_path):
+def test_mesh_stage_meets_the_sphere_and_cuts_what_is_invented(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     normals = rng.normal(size=(30000, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
+from core.mapping.rows import DetectionRow
 from core.timeline.clusters import cluster_detections, cluster_radius
 from tests.core.making_rows import mapped, unplaced
 
 
-def members(rows: list, radius: float) -> list[list[int]]:
+def members(rows: Sequence[DetectionRow], radius: float) -> list[list[int]]:
     return [[row.id for row in cluster.rows] for cluster in cluster_detections(rows, radius)]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import resource
 import subprocess
 import sys
+from collections.abc import Callable
 from fractions import Fraction
 from itertools import islice
 from pathlib import Path
@@ -39,15 +40,15 @@ SUBTITLE = b"1\n00:00:00,000 --> 00:00:03,000\nstage 2\n"
         ("concat_disc.ts", 96, (480, 360)),
     ],
 )
-def test_the_film_is_whole_at_12_frames_per_second(name: str, frames: int, size: tuple[int, int]):
+def test_the_film_is_whole_at_12_frames_per_second(name: str, frames: int, size: tuple[int, int]) -> None:
     table = probe_video(INPUTS / name)
     info = table.info
     assert ((info.width, info.height), info.n_frames, info.damage) == (size, frames, ())
-    assert (info.average_rate, info.duration_s) == (12, frames / 12)
+    assert (info.average_rate, info.duration_s) == (Fraction(12), frames / 12)
     assert [table.time(i) for i in range(frames)] == pytest.approx([i / 12 for i in range(frames)], abs=1e-4)
 
 
-def test_the_stream_taken_is_named_where_there_was_a_choice():
+def test_the_stream_taken_is_named_where_there_was_a_choice() -> None:
     two = probe_video(INPUTS / "twov.mp4").info
     assert two.stream == 1
     assert two.streams == ("stream 0 (mjpeg, 160x120, 4 frames)", "stream 1 (h264, 480x360, 48 frames)")
@@ -55,7 +56,7 @@ def test_the_stream_taken_is_named_where_there_was_a_choice():
     assert probe_video(INPUTS / "afirst.mp4").info.streams == ()
 
 
-def test_another_stream_can_be_asked_for():
+def test_another_stream_can_be_asked_for() -> None:
     preview = probe_video(INPUTS / "twov.mp4", stream=0).info
     assert (preview.stream, preview.width, preview.n_frames) == (0, 160, 4)
     with pytest.raises(BadInput, match=r"no video stream 2; its video streams: stream 0 .*, stream 1 ") as caught:
@@ -71,7 +72,7 @@ def audio_first(folder: Path, suffix: str) -> tuple[Path, str]:
 def text_first(folder: Path, suffix: str) -> tuple[Path, str]:
     made = film(folder / "film.mp4", *X264_B)
     (folder / "t.srt").write_bytes(SUBTITLE)
-    words = ["-i", folder / "t.srt", "-i", made, "-map", "0", "-map", "1", "-c:v", "copy"]
+    words: list[str | Path] = ["-i", folder / "t.srt", "-i", made, "-map", "0", "-map", "1", "-c:v", "copy"]
     return ffmpeg(folder / f"t.{suffix}", *words, *(["-c:s", "mov_text"] if suffix == "mp4" else [])), "v:0"
 
 
@@ -79,14 +80,14 @@ def preview_first(folder: Path, suffix: str) -> tuple[Path, str]:
     """A small preview of as many seconds, marked as default like the film or instead of it."""
     made = film(folder / "film.mp4", *X264_B)
     small = ffmpeg(folder / "small.mp4", "-i", made, "-vf", "scale=64:48", *X264)
-    words = ["-i", small, "-i", made, "-map", "0", "-map", "1", "-c", "copy"]
+    words: list[str | Path] = ["-i", small, "-i", made, "-map", "0", "-map", "1", "-c", "copy"]
     return ffmpeg(folder / f"p.{suffix}", *words, "-disposition:v:0", "default", "-disposition:v:1", "0"), "v:1"
 
 
 def cover_first(folder: Path, suffix: str) -> tuple[Path, str]:
     made = film(folder / "film.mp4", *X264_B)
     cover = ffmpeg(folder / "cover.jpg", "-i", SAMPLE, "-frames:v", "1")
-    words = ["-i", cover, "-i", made, "-map", "0", "-map", "1", "-c", "copy"]
+    words: list[str | Path] = ["-i", cover, "-i", made, "-map", "0", "-map", "1", "-c", "copy"]
     return ffmpeg(folder / f"c.{suffix}", *words, "-disposition:v:0", "default"), "v:1"
 
 
@@ -107,7 +108,9 @@ def cover_first(folder: Path, suffix: str) -> tuple[Path, str]:
         (cover_first, "mkv"),
     ],
 )
-def test_the_film_among_other_streams_is_what_ffprobe_lists(make, suffix: str, tmp_path: Path):
+def test_the_film_among_other_streams_is_what_ffprobe_lists(
+    make: Callable[[Path, str], tuple[Path, str]], suffix: str, tmp_path: Path
+) -> None:
     path, stream = make(tmp_path, suffix)
     expected = ffprobe_frames(path, stream)
     table = probe_video(path)
@@ -138,7 +141,7 @@ KINDS = {
 
 @pytest.mark.tool("ffmpeg")
 @pytest.mark.parametrize("name", KINDS)
-def test_an_intact_film_is_what_ffprobe_lists_and_no_damage_is_invented(name: str, tmp_path: Path):
+def test_an_intact_film_is_what_ffprobe_lists_and_no_damage_is_invented(name: str, tmp_path: Path) -> None:
     path = film(tmp_path / name, *KINDS[name])
     table = probe_video(path)
     assert (table.info.damage, table.info.repaired_times, table.info.joined) == ((), 0, ())
@@ -147,7 +150,7 @@ def test_an_intact_film_is_what_ffprobe_lists_and_no_damage_is_invented(name: st
 
 @pytest.mark.tool("ffmpeg")
 @pytest.mark.parametrize("cut", [("-ss", "1.3"), ("-ss", "0.5", "-t", "2")])
-def test_frames_that_an_edit_list_cuts_away_are_no_damage(cut: tuple[str, ...], tmp_path: Path):
+def test_frames_that_an_edit_list_cuts_away_are_no_damage(cut: tuple[str, ...], tmp_path: Path) -> None:
     whole = film(tmp_path / "whole.mp4", *X264_B)
     path = ffmpeg(tmp_path / "cut.mov", *cut[:2], "-i", whole, *cut[2:], "-c", "copy")
     table = probe_video(path)
@@ -157,9 +160,9 @@ def test_frames_that_an_edit_list_cuts_away_are_no_damage(cut: tuple[str, ...], 
 
 @pytest.mark.tool("ffmpeg")
 @pytest.mark.parametrize("codec", [X264_B, ("-c:v", "mpeg4", "-bf", "2")])
-def test_avi_which_has_no_presentation_times_keeps_an_even_rate(codec: tuple[str, ...], tmp_path: Path):
+def test_avi_which_has_no_presentation_times_keeps_an_even_rate(codec: tuple[str, ...], tmp_path: Path) -> None:
     table = probe_video(film(tmp_path / "a.avi", *codec))
-    assert (table.info.average_rate, table.info.repaired_times) == (12, 0)
+    assert (table.info.average_rate, table.info.repaired_times) == (Fraction(12), 0)
     assert [table.time(i) for i in range(48)] == [Fraction(i, 12) for i in range(48)]
 
 
@@ -168,7 +171,7 @@ def test_avi_which_has_no_presentation_times_keeps_an_even_rate(codec: tuple[str
     ("suffix", "codec", "parts"),
     [("ts", X264_B, 2), ("ts", ("-c:v", "mpeg2video", "-bf", "2"), 3), ("mpg", ("-c:v", "mpeg2video"), 2)],
 )
-def test_joined_recordings_go_on_in_time(suffix: str, codec: tuple[str, ...], parts: int, tmp_path: Path):
+def test_joined_recordings_go_on_in_time(suffix: str, codec: tuple[str, ...], parts: int, tmp_path: Path) -> None:
     part = film(tmp_path / f"part.{suffix}", *codec)
     joined = tmp_path / f"joined.{suffix}"
     joined.write_bytes(part.read_bytes() * parts)
@@ -179,7 +182,7 @@ def test_joined_recordings_go_on_in_time(suffix: str, codec: tuple[str, ...], pa
 
 
 @pytest.mark.parametrize("name", ["d_x265_rand.mp4", "d_x264g12_rand.mp4"])
-def test_frames_that_the_decoder_loses_without_a_word_are_damage_with_a_place(name: str):
+def test_frames_that_the_decoder_loses_without_a_word_are_damage_with_a_place(name: str) -> None:
     with pytest.raises(BadInput, match=r"4 frames lost after frame 18 at 1\.500 s") as caught:
         probe_video(INPUTS / name)
     assert caught.value.code == "truncated_video"
@@ -194,6 +197,7 @@ def overwrite_packet(path: Path, number: int) -> None:
     with av.open(str(path)) as container:
         packet = next(islice(container.demux(video=0), number, None))
         start, size = packet.pos, packet.size
+        assert start is not None
     data = bytearray(path.read_bytes())
     data[start : start + size] = bytes(size)
     path.write_bytes(data)
@@ -209,7 +213,9 @@ def overwrite_packet(path: Path, number: int) -> None:
         ("-c:v", "libx265", "-x265-params", "bframes=0:keyint=12:log-level=none"),
     ],
 )
-def test_what_is_shown_of_a_damaged_film_is_sound_and_what_is_not_is_named(codec: tuple[str, ...], tmp_path: Path):
+def test_what_is_shown_of_a_damaged_film_is_sound_and_what_is_not_is_named(
+    codec: tuple[str, ...], tmp_path: Path
+) -> None:
     path = film(tmp_path / "whole.mp4", *codec)
     whole = {row.pts: row.sha256 for row in probe_video(path).rows}
     overwrite_packet(path, 26)
@@ -220,13 +226,13 @@ def test_what_is_shown_of_a_damaged_film_is_sound_and_what_is_not_is_named(codec
     assert all(whole[row.pts] == row.sha256 for row in part.rows)
 
 
-def test_frames_that_the_index_lists_and_the_file_lacks_are_counted(tmp_path: Path):
+def test_frames_that_the_index_lists_and_the_file_lacks_are_counted(tmp_path: Path) -> None:
     cut = cut_to(SAMPLE, 0.5, tmp_path / "cut.mp4")
     with pytest.raises(BadInput, match=r"\d+ of the 96 frames that its index lists are missing"):
         probe_video(cut)
 
 
-def test_memory_stays_small_where_all_pictures_are_of_the_b_kind():
+def test_memory_stays_small_where_all_pictures_are_of_the_b_kind() -> None:
     """Low-delay HEVC: 900 frames of 1080p, which would take 2.8 GB together."""
     program = (
         "import sys; from pathlib import Path; from core.video.decode import VideoReader\n"
@@ -247,19 +253,19 @@ def test_memory_stays_small_where_all_pictures_are_of_the_b_kind():
 
 
 @pytest.mark.parametrize("name", ["axis:2.mp4", "C:film.mp4", "-o.mp4", "%03d.mp4", "file:x.mp4", "a b,|é.mp4"])
-def test_any_name_is_a_file_name(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_any_name_is_a_file_name(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     make_video(tmp_path / "a.mp4", every_ms(40, 5)).rename(tmp_path / name)
     monkeypatch.chdir(tmp_path)
     assert probe_video(Path(name)).info.n_frames == 5
     assert probe_video(tmp_path / name).info.n_frames == 5
 
 
-def test_a_name_that_no_file_can_have_is_one_clear_error():
+def test_a_name_that_no_file_can_have_is_one_clear_error() -> None:
     with pytest.raises(BadInput, match="name cannot be used: File name too long"):
         VideoReader(Path("x" * 300))
 
 
-def test_large_pictures_are_refused_from_the_header():
+def test_large_pictures_are_refused_from_the_header() -> None:
     with pytest.raises(BadInput, match=r"960x720 = 691,200 pixels; at most 600,000 are read") as caught:
         VideoReader(SAMPLE, max_pixels=600_000)
     assert caught.value.code == "too_many_pixels"

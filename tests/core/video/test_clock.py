@@ -34,9 +34,11 @@ def times(stamps: Sequence[int | None], duration: int = 0) -> tuple[list[int], i
         ([0, 40, 9000, 9040], [0, 40, 9000, 9040], 0, []),
     ],
 )
-def test_times_ascend_and_say_what_was_done(stamps, expected, repaired, joined):
+def test_times_ascend_and_say_what_was_done(
+    stamps: Sequence[int | None], expected: list[int], repaired: int, joined: list[int]
+) -> None:
     assert times(stamps) == (expected, repaired, joined)
 
 
-def test_a_frame_that_says_how_long_it_lasts_is_followed_after_that_long():
+def test_a_frame_that_says_how_long_it_lasts_is_followed_after_that_long() -> None:
     assert times([0, 100, 0, 100], duration=100) == ([0, 100, 200, 300], 0, [2])

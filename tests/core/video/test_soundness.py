@@ -23,7 +23,7 @@ class Decoder:
     """Sends packets and frames to `SoundFrames` and keeps what it hands on."""
 
     def __init__(self) -> None:
-        self.sound = SoundFrames()
+        self.sound: SoundFrames[Frame] = SoundFrames()
         self.shown: list[int | None] = []
 
     def send(self, *pts: int) -> None:
@@ -44,7 +44,7 @@ class Decoder:
         return [(loss.after, loss.frames) for loss in self.sound.losses]
 
 
-def test_frames_in_the_order_of_decoding_are_handed_on_at_once():
+def test_frames_in_the_order_of_decoding_are_handed_on_at_once() -> None:
     decoder = Decoder()
     for number in range(5):
         decoder.send(number)
@@ -53,7 +53,7 @@ def test_frames_in_the_order_of_decoding_are_handed_on_at_once():
     assert decoder.end() == []
 
 
-def test_a_frame_waits_for_what_was_decoded_before_it():
+def test_a_frame_waits_for_what_was_decoded_before_it() -> None:
     decoder = Decoder()
     decoder.send(0, 3, 1, 2)
     decoder.come(Frame(0, 0, key_frame=True), Frame(2, 1), Frame(3, 2))
@@ -63,7 +63,7 @@ def test_a_frame_waits_for_what_was_decoded_before_it():
     assert decoder.end() == []
 
 
-def test_a_broken_frame_takes_those_along_that_were_decoded_after_it():
+def test_a_broken_frame_takes_those_along_that_were_decoded_after_it() -> None:
     decoder = Decoder()
     decoder.send(0, 3, 1, 2, 4)
     decoder.come(Frame(0, 0, key_frame=True), Frame(2, 1), Frame(3, 2), Frame(1, 3, is_corrupt=True))
@@ -72,7 +72,7 @@ def test_a_broken_frame_takes_those_along_that_were_decoded_after_it():
     assert decoder.end() == [(1, 3)]
 
 
-def test_a_frame_that_never_comes_is_missed_after_the_longest_delay_a_decoder_has():
+def test_a_frame_that_never_comes_is_missed_after_the_longest_delay_a_decoder_has() -> None:
     decoder = Decoder()
     decoder.send(0, 1)
     decoder.come(Frame(0, 0, key_frame=True))
@@ -87,7 +87,7 @@ def test_a_frame_that_never_comes_is_missed_after_the_longest_delay_a_decoder_ha
     assert decoder.end() == [(1, REORDERING + 2)]
 
 
-def test_what_cannot_decode_before_the_first_keyframe_was_never_lost():
+def test_what_cannot_decode_before_the_first_keyframe_was_never_lost() -> None:
     decoder = Decoder()
     decoder.send(0, 1, 2)
     decoder.come(Frame(0, 0, is_corrupt=True))
@@ -97,7 +97,7 @@ def test_what_cannot_decode_before_the_first_keyframe_was_never_lost():
     assert decoder.end() == []
 
 
-def test_two_fields_in_two_packets_are_one_frame():
+def test_two_fields_in_two_packets_are_one_frame() -> None:
     decoder = Decoder()
     for number in range(0, 20, 2):
         decoder.send(number, number + 0)
@@ -106,7 +106,7 @@ def test_two_fields_in_two_packets_are_one_frame():
     assert decoder.end() == []
 
 
-def test_a_decoder_that_carries_no_numbers_is_believed_to_keep_the_order():
+def test_a_decoder_that_carries_no_numbers_is_believed_to_keep_the_order() -> None:
     decoder = Decoder()
     decoder.send(0, 1)
     decoder.come(Frame(None, 0, key_frame=True), Frame(None, 1))
@@ -136,11 +136,11 @@ class Packet(bytes):
         ("h264", bytes(7), True),
     ],
 )
-def test_packets_without_a_picture_of_their_own_are_known(codec: str, data: bytes, shown: bool):
+def test_packets_without_a_picture_of_their_own_are_known(codec: str, data: bytes, shown: bool) -> None:
     assert shows_picture(codec, Packet(data)) is shown
 
 
-def test_a_packet_that_an_edit_list_cuts_away_shows_nothing():
+def test_a_packet_that_an_edit_list_cuts_away_shows_nothing() -> None:
     packet = Packet(b"\x10")
     packet.is_discard = True
     assert not shows_picture("h264", packet)

@@ -19,7 +19,7 @@ def texture(seed: int = 0, width: int = 900) -> NDArray[np.uint8]:
     noise = np.random.default_rng(seed).random((SIZE[0], width)).astype(np.float32)
     smooth = cv2.GaussianBlur(noise, (0, 0), 2.0)
     scaled = (smooth - smooth.min()) / np.ptp(smooth)
-    return (30 + 180 * scaled).astype(np.uint8)
+    return np.asarray(30 + 180 * scaled).astype(np.uint8)
 
 
 def moving(count: int = 30, step: int = 11) -> list[NDArray[np.uint8]]:

@@ -1,0 +1,8 @@
+"""The part of Open3D that this project uses: tensors from arrays, and ray casting on triangle meshes.
+
+Open3D's own stubs do not know that a tensor is made from an array or that arrays are taken for tensors, and they pull
+in its machine-learning and plotting modules, which most of the checker's time would go to.
+"""
+
+from open3d import core as core
+from open3d import t as t

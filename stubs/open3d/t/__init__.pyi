@@ -1,0 +1,3 @@
+"""Geometry on tensors."""
+
+from open3d.t import geometry as geometry

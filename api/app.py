@@ -8,7 +8,7 @@ from fastapi import Depends, FastAPI
 from prometheus_client import CollectorRegistry
 
 from api import openapi, problems
-from api.middleware import RequestMetrics, RequestMiddleware
+from api.middleware import RequestMetrics, RequestMiddleware, known_query
 from api.probing import Prober
 from api.resource import Resources
 from api.routes import (
@@ -17,7 +17,6 @@ from api.routes import (
     frames,
     health,
     inspections,
-    logs,
     options,
     pages,
     stages,
@@ -27,7 +26,6 @@ from api.routes import (
 )
 from api.services import Services, services_from
 from api.state import State
-from api.strictness import known_query
 from api.trust import TrustMiddleware
 from api.watching import Watcher
 from core.errors import BadInput
@@ -35,7 +33,7 @@ from core.versions import program_version
 from store.keys import KeyRing, Keys
 from store.settings import deployment_settings
 
-_ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, logs, artifacts, frames)
+_ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames)
 
 
 def create_app(services: Services | None = None) -> FastAPI:

@@ -1,10 +1,16 @@
-"""`multipart/form-data` streamed to disk: no part is ever in memory as a whole, none grows past its limit."""
+"""`multipart/form-data` streamed to disk: no part is ever in memory as a whole, none grows past its limit.
+
+The bytes that are still to come are promised before the first is read; the promise is kept up to date, and given back
+at the end.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import re
+import time
 from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
@@ -16,17 +22,60 @@ from python_multipart.multipart import MultipartParser, parse_options_header
 
 from api.limits import require_space
 from api.problems import FieldError, Refused
-from api.promising import promised
 from api.receiving import PIECE, on_disk
 from api.services import Services
 from core.errors import DiskFull
 from core.names import unknown_name
+from store.admission import Admission, FormPromise
 from store.disk import NO_SPACE
 
 if TYPE_CHECKING:
     from hashlib import _Hash
 
     from python_multipart.multipart import MultipartCallbacks
+
+
+_STEP_BYTES = 64 << 20
+_STEP_S = 10.0
+"""The promise is brought up to date after so many bytes or so long; a form without a length promises in these steps."""
+
+
+@dataclass
+class Promise:
+    """The promise of one form while it comes in."""
+
+    held: FormPromise
+    size: int
+    """Announced; grows with a form that did not say its length."""
+    came: int = 0
+    _kept_at: float = field(default_factory=time.monotonic)
+    _kept: int = 0
+
+    async def arrived(self, more: int) -> None:
+        """So many bytes were written; `DiskFull` when there is no room for more than was announced."""
+        self.came += more
+        beyond = self.came > self.size
+        if beyond:
+            self.size = self.came + _STEP_BYTES
+        if beyond or self.came - self._kept >= _STEP_BYTES or time.monotonic() - self._kept_at >= _STEP_S:
+            await on_disk(partial(self.held.keep, self.size - self.came))
+            self._kept, self._kept_at = self.came, time.monotonic()
+
+
+@asynccontextmanager
+async def promised(admission: Admission, owner: str, size: int) -> AsyncIterator[Promise]:
+    """Promise the bytes of a form for the block.
+
+    Raises:
+        LimitReached: too many uploads are open.
+        DiskFull: there is no room.
+    """
+    held = await on_disk(partial(admission.promise_form, owner, size))
+    try:
+        yield Promise(held, size)
+    finally:
+        await on_disk(held.end)
+
 
 _DISPOSITION = b"content-disposition"
 _BOUNDARY = re.compile(rb"[0-9A-Za-z'()+_,./:=? -]{1,70}")

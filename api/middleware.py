@@ -1,14 +1,23 @@
-"""Around every request: a name for it, the time it took, and headers that every answer has."""
+"""Around every request: a name for it, the time it took, headers of every answer, and no unknown query parameter."""
 
 from __future__ import annotations
 
 import re
 import time
 import uuid
+from collections.abc import Iterator
+from http import HTTPStatus
 
+from fastapi import Request
+from fastapi.dependencies.models import Dependant
+from fastapi.routing import APIRoute
 from prometheus_client import CollectorRegistry, Counter, Histogram
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from api.auth import BEARER, caller
+from api.problems import FieldError, Refused, pointer
+from core.names import unknown_name
 
 _USABLE = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _BUCKETS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0, 60.0)
@@ -82,3 +91,44 @@ def _request_id(scope: Scope) -> str:
     """The client's own name for the request when it is harmless in a log, else a new one."""
     given = Headers(scope=scope).get("x-request-id", "")
     return given if _USABLE.fullmatch(given) else uuid.uuid4().hex
+
+
+_SHOWN = 64
+"""Characters of an unknown name that are repeated in the answer."""
+
+
+async def known_query(request: Request) -> None:
+    """Dependency of the whole application: 422 for a query parameter that is not of the route that was found."""
+    if not request.query_params:
+        return
+    route = request.scope["route"]
+    assert isinstance(route, APIRoute)  # only these have dependencies
+    known, needs_caller = _declared(route)
+    unknown = [name for name in request.query_params if name not in known]
+    if not unknown:
+        return
+    if needs_caller:  # who may not ask at all is told that first
+        await caller(request, await BEARER(request))
+    errors = [
+        FieldError(pointer=pointer(("query", name[:_SHOWN])), detail=_words(name[:_SHOWN], known)) for name in unknown
+    ]
+    where = f"query.{unknown[0][:_SHOWN]}"
+    status = HTTPStatus.UNPROCESSABLE_ENTITY
+    raise Refused(status, "unknown_parameter", errors[0].detail, where=where, errors=errors)
+
+
+def _words(name: str, known: tuple[str, ...]) -> str:
+    return unknown_name("query parameter", name, known)
+
+
+def _declared(route: APIRoute) -> tuple[tuple[str, ...], bool]:
+    """Names of the route's query parameters, and whether it asks who calls."""
+    dependants = list(_flat(route.dependant))
+    names = tuple(dict.fromkeys(field.alias for one in dependants for field in one.query_params))
+    return names, any(one.call is caller for one in dependants)
+
+
+def _flat(dependant: Dependant) -> Iterator[Dependant]:
+    yield dependant
+    for inner in dependant.dependencies:
+        yield from _flat(inner)

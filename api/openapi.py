@@ -7,9 +7,9 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
-from api.creating import CreateBody
 from api.problems import MEDIA_TYPE
 from api.schemas import Parameters
+from api.submit import CreateBody
 
 _BODIES = (Parameters, CreateBody)
 """Bodies that routes read by themselves, so that FastAPI does not know them."""

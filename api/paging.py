@@ -17,8 +17,7 @@ from fastapi.responses import Response, StreamingResponse
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import Send
 
-from api.caching import matches
-from api.negotiation import CSV_RESPONSE, Format, TableForm
+from api.negotiation import CSV_RESPONSE, Format, TableForm, matches
 from api.problems import log, responses
 from api.threads import LimitedThreads
 from core.errors import BladeAtlasError

@@ -1,10 +1,13 @@
-"""Kinds of values that come in queries."""
+"""Kinds of values that come in queries, and enumerations of the code as the API takes and gives them."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
 
 def _without_nul(text: str) -> str:
@@ -20,3 +23,19 @@ Seconds = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
 """A time in the video."""
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 """A number in [0, 1]."""
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Stands in ``Annotated[str, ...]``: the string is the value of a member of `kind`."""
+
+    kind: type[StrEnum]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """The values as literals, so that the schema needs no component of its own."""
+        values = core_schema.literal_schema([member.value for member in self.kind])
+        return core_schema.no_info_before_validator_function(_plain, values)
+
+
+def _plain(value: Any) -> Any:
+    return value.value if isinstance(value, StrEnum) else value

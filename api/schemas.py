@@ -7,8 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from api.enumerations import OneOf
-from api.parameters import Text
+from api.parameters import OneOf, Text
 from core.settings import PRESET_NAMES
 from core.states import InspectionState, StageState
 

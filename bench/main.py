@@ -8,11 +8,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench import measurements
 from bench.mutate import command as mutate
 from bench.scenes import command as scenes
-from bench.service import command as service
 from bench.soak import command as soak
-from bench.speed import command as speed
 from core.errors import BadInput, BladeAtlasError
 
 
@@ -36,14 +35,14 @@ def make_parser() -> argparse.ArgumentParser:
     accuracy.add_argument("--json", action="store_true", help="print JSON instead of a table")
     accuracy.set_defaults(run=_accuracy)
     speed_parser = commands.add_parser("speed", help="time the parts of a finished run beside other programs")
-    speed.add_arguments(speed_parser)
-    speed_parser.set_defaults(run=speed.command)
+    measurements.add_speed_arguments(speed_parser)
+    speed_parser.set_defaults(run=measurements.speed)
     soak_parser = commands.add_parser("soak", help="run jobs through a whole deployment while its processes are killed")
     soak.add_arguments(soak_parser)
     soak_parser.set_defaults(run=soak.command)
     service_parser = commands.add_parser("service", help="time uploads, downloads, many clients, and the queue")
-    service.add_arguments(service_parser)
-    service_parser.set_defaults(run=service.command)
+    measurements.add_service_arguments(service_parser)
+    service_parser.set_defaults(run=measurements.service)
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)

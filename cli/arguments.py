@@ -1,21 +1,62 @@
-"""What the command line accepts."""
+"""Every command with its arguments; argparse, with negative numbers as values and errors of one line."""
 
 from __future__ import annotations
 
 import argparse
+import re
+import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, NoReturn
 
-from cli.parser import Parser
 from cli.remote_arguments import add_remote_commands
+from cli.terminal import say
 from core.settings import PRESET_NAMES
 
+_NEGATIVE = re.compile(r"-(\d|\.\d|inf|nan)", re.IGNORECASE)
+_BAD_USAGE = 2
 _EXIT_CODES = (
     "exit codes: 0 done, 1 internal error, 2 bad input or parameters, 3 no reconstruction, 4 partial, 130 interrupted"
 )
+_SHARED = {
+    "probe": ("inputs", "probe"),
+    "check": ("inputs", "check"),
+    "point": ("query", "point"),
+    "views": ("query", "views"),
+}
+"""Module and function of commands that share a module; any other is `command` in the module of its name."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose subcommands are parsers of the same kind."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # the base class has overloads
+        """Parse, with `--point -3.6,0.5,12.7` read as `--point=-3.6,0.5,12.7`."""
+        return super().parse_known_args(with_negative_values(sys.argv[1:] if args is None else args), namespace)
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong in one line and exit with the code of bad input."""
+        say(f"bladeatlas: {message} (see {self.prog} --help)", error=True)
+        self.exit(_BAD_USAGE)
+
+
+def with_negative_values(args: Sequence[str]) -> list[str]:
+    """The arguments, each negative number or list of numbers joined with the option before it.
+
+    Alone, argparse takes all but a single plain negative number for an option.
+    """
+    joined: list[str] = []
+    for word in args:
+        option = joined[-1] if joined else ""
+        if _NEGATIVE.match(word) and option.startswith("--") and option != "--" and "=" not in option:
+            joined[-1] = f"{option}={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def parser() -> argparse.ArgumentParser:
-    """The whole command; every subcommand sets `module`, whose `command(parsed)` runs it."""
+    """The whole command; every subcommand sets the `module` and the `function` that run it."""
     top = _top()
     top.add_argument("--traceback", action="store_true", help="show where an internal error came from")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
@@ -102,7 +143,8 @@ def _add(
     commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, epilog: str | None = None
 ) -> argparse.ArgumentParser:
     command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=epilog)
-    command.set_defaults(module=f"cli.{name}")
+    module, function = _SHARED.get(name, (name, "command"))
+    command.set_defaults(module=f"cli.{module}", function=function)
     return command
 
 

@@ -20,7 +20,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         # The module of a subcommand is loaded only when it is called: `--help` loads no vision library.
         with guarded_stdout():
-            return int(importlib.import_module(parsed.module).command(parsed))
+            return int(getattr(importlib.import_module(parsed.module), parsed.function)(parsed))
     except Cancelled:
         return INTERRUPTED
     except KeyboardInterrupt:

@@ -1,19 +1,23 @@
-"""What the commands that talk to a server have in common."""
+"""The commands that talk to a server: submit, status, watch, download and cancel; and what they have in common."""
 
 from __future__ import annotations
 
 import argparse
 import os
 import sys
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from rich.markup import escape
 from rich.progress import BarColumn, DownloadColumn, Progress, TaskID, TextColumn, TransferSpeedColumn
 
 from cli import exits
 from cli.client import Client, InspectionInfo
+from cli.client.client import chosen
+from cli.client.transfers import no_progress
+from cli.parameters import Parameters, parse_assignment, read_parameters
 from cli.progress import duration
 from cli.terminal import console, say, say_json, visible
 from core.errors import BadInput
@@ -22,6 +26,93 @@ from core.states import InspectionState
 DEFAULT_SERVER = "http://127.0.0.1:8000"
 SERVER_VARIABLE = "BLADEATLAS_SERVER"
 KEY_VARIABLE = "BLADEATLAS_API_KEY"
+
+
+def submit(parsed: argparse.Namespace) -> int:
+    """Upload, start, and with `--wait` show it until it is over; prints the id first."""
+    parameters = _submitted_parameters(parsed)
+    with client_of(parsed) as client:
+        with byte_bars() as bars:
+            on_bytes = bars.show if bars is not None else no_progress
+            inspection = client.submit(parsed.video, parsed.annotations, parameters, on_bytes=on_bytes)
+        if parsed.json:
+            say_json(inspection.raw)
+        else:
+            say(inspection.id)
+        if not parsed.wait:
+            return 0
+        last = follow(client, inspection, parsed.json)
+    if not parsed.json:
+        say(line(last), error=True)
+    return exit_code(last)
+
+
+def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
+    """Parameter file first, then what the command line says over it; checked here before anything is sent."""
+    base = read_parameters(parsed.parameters) if parsed.parameters else Parameters()
+    options = {**base.options, **dict(parse_assignment(text) for text in parsed.assignments)}
+    wanted = Parameters(
+        parsed.preset or base.preset, options, parsed.label or base.label, parsed.external_id or base.external_id
+    )
+    wanted.settings()
+    return {
+        "preset": wanted.preset,
+        "options": wanted.options,
+        "label": wanted.label,
+        "external_id": wanted.external_id,
+    }
+
+
+def status(parsed: argparse.Namespace) -> int:
+    """Print one line per inspection, or JSON lines."""
+    with client_of(parsed) as client:
+        if parsed.id is not None:
+            found = [client.get(parsed.id)]
+        else:
+            filters = {"state": parsed.state} if parsed.state else {}
+            found = list(islice(client.list(limit=min(parsed.limit, 200), **filters), parsed.limit))
+    for inspection in found:
+        if parsed.json:
+            say_json(inspection.raw)
+        else:
+            say(line(inspection))
+    return 0
+
+
+def watch(parsed: argparse.Namespace) -> int:
+    """Follow it; the exit code is that of `bladeatlas run`. Interrupting stops the watching only."""
+    with client_of(parsed) as client:
+        last = follow(client, client.get(parsed.id), parsed.json)
+    if not parsed.json:
+        say(line(last))
+    return exit_code(last)
+
+
+def download(parsed: argparse.Namespace) -> int:
+    """Fetch files into a folder; what is there already is left alone, what was cut off goes on."""
+    out = folder_of(parsed)
+    with client_of(parsed) as client, byte_bars() as bars:
+        found = chosen(client.artifacts(parsed.id), parsed.include)
+        if not found:
+            raise BadInput("there is no such file; it may not be published yet", code="no_files", where="--include")
+        for artifact in found:
+            path = client.download(parsed.id, artifact, out, bars.show if bars is not None else no_progress)
+            if parsed.json:
+                say_json({"path": str(path), "size": artifact.size, "sha256": artifact.sha256})
+    if not parsed.json:
+        say(f"{len(found)} files in {out}")
+    return 0
+
+
+def cancel(parsed: argparse.Namespace) -> int:
+    """Ask the server to stop it and print how it stands."""
+    with client_of(parsed) as client:
+        inspection = client.cancel(parsed.id)
+    if parsed.json:
+        say_json(inspection.raw)
+    else:
+        say(line(inspection))
+    return 0
 
 
 def client_of(parsed: argparse.Namespace) -> Client:

@@ -48,7 +48,7 @@ def _submit(submit: argparse.ArgumentParser) -> None:
 def _keys(commands: Commands[argparse.ArgumentParser]) -> None:
     text = "make, list and revoke API keys in the database of this machine's server"
     keys = commands.add_parser("keys", help=text, description=text[0].upper() + text[1:] + ".")
-    keys.set_defaults(module="cli.keys")
+    keys.set_defaults(module="cli.keys", function="command")
     actions = keys.add_subparsers(required=True, dest="action", metavar="ACTION")
     create = actions.add_parser("create", help="make a key and print it: it is shown once")
     create.add_argument("name", metavar="NAME", help="who it is for")
@@ -62,7 +62,7 @@ def _add(
     commands: Commands[argparse.ArgumentParser], name: str, text: str, epilog: str | None = None
 ) -> argparse.ArgumentParser:
     command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=epilog)
-    command.set_defaults(module=f"cli.{name}")
+    command.set_defaults(module="cli.remote", function=name)
     command.add_argument("--server", metavar="URL", help="address (BLADEATLAS_SERVER, or http://127.0.0.1:8000)")
     command.add_argument("--key-env", metavar="NAME", help=_KEY)
     command.add_argument("--key-file", type=Path, metavar="FILE", help="file that holds nothing but the key")

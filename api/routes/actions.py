@@ -11,13 +11,13 @@ from starlette.concurrency import run_in_threadpool
 
 from api.auth import CallerOf
 from api.finding import find_inspection
-from api.intake import settings_of
 from api.limits import require_space
 from api.problems import FieldError, Refused, pointer, responses
 from api.routes.inspections import represent
 from api.schemas import Parameters, Resource
 from api.services import Services
 from api.state import state_of
+from api.submit import settings_of
 from core.fingerprint import canonical_json
 from core.settings import Settings
 from core.states import InspectionState

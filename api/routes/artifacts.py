@@ -17,8 +17,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from zipstream import ZipStream
 
 from api.auth import CallerOf
-from api.caching import Span, matches, wanted_span
 from api.finding import find_inspection
+from api.negotiation import Span, matches, wanted_span
 from api.problems import not_found, responses
 from api.routes.tables import not_ready
 from api.state import state_of

@@ -13,14 +13,13 @@ from starlette.concurrency import run_in_threadpool
 
 from api import schemas
 from api.auth import Caller, CallerOf
-from api.caching import matches
-from api.creating import CREATE_BODY, asked_by_form, asked_by_json
 from api.finding import find_inspection, gone, is_id
-from api.intake import Asked, accept
+from api.negotiation import matches
 from api.paging import next_link
 from api.parameters import Text
 from api.problems import Refused, not_found, responses
 from api.state import State, state_of
+from api.submit import CREATE_BODY, Asked, accept, asked_by_form, asked_by_json
 from api.watching import Snapshot
 from store.inspections import mark_deleted
 from store.listing import Filter, list_inspections

@@ -8,10 +8,10 @@ from fastapi import APIRouter, Depends, Request
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from api.auth import caller
-from api.creating import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
 from api.problems import responses
 from api.schemas import Parameters
 from api.state import state_of
+from api.submit import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
 from core.settings import PRESET_NAMES, Settings, make_settings, option_names
 from core.settings.describe import describe_options
 

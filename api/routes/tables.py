@@ -12,12 +12,10 @@ from pydantic import BaseModel
 
 from api import table_schemas as schemas
 from api.auth import CallerOf
-from api.caching import matches
-from api.enumerations import OneOf
 from api.finding import find_inspection
-from api.negotiation import CSV_RESPONSE, Format, TableForm, table, wants_csv
+from api.negotiation import CSV_RESPONSE, Format, TableForm, matches, table, wants_csv
 from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
-from api.parameters import Seconds, Share, Text
+from api.parameters import OneOf, Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
 from core.mapping.rows import Outcome

@@ -9,8 +9,7 @@ import numpy as np
 
 from bench.accuracy.align import align, pose_errors
 from bench.accuracy.confidence import score_confidence
-from bench.accuracy.instances import persistence_by_record, score_defects
-from bench.accuracy.placement import place_detections, score_placements
+from bench.accuracy.placement import persistence_by_record, place_detections, score_defects, score_placements
 from bench.accuracy.result import Result, ResultModel, load_result
 from bench.accuracy.surface import Reference, make_reference, score_surface
 from bench.accuracy.truth import Truth, load_truth

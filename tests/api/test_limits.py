@@ -23,7 +23,7 @@ from api.app import create_app
 from store.db import Database
 from store.models import Inspection, Reservation, Upload
 from tests.api.conftest import ROOT, TUS, Backend, client_of, free_port, wait_until
-from tests.api.test_creating import leftovers, post, rows
+from tests.api.test_submit import leftovers, post, rows
 from tests.databases import BOTH, database
 
 AT_ONCE = 50

@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from api.problems import MEDIA_TYPE
 from tests.api.conftest import TUS, Backend, client_of
-from tests.api.test_creating import form, leftovers, post
+from tests.api.test_submit import form, leftovers, post
 from tests.api.test_uploads import begin
 from tests.core.making_videos import every_ms, make_video
 

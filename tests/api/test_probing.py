@@ -21,7 +21,7 @@ from core.settings import make_settings
 from store.keys import Keys
 from store.settings import DeploymentSettings
 from tests.api.conftest import ROOT, VIDEO, Backend, client_of, wait_until
-from tests.api.test_creating import leftovers, post, rows
+from tests.api.test_submit import leftovers, post, rows
 
 BIG = ROOT / "tests" / "data" / "inputs" / "big180.mp4"
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from bench.mutate.areas import AREAS
+from bench.mutate.command import draw
 from bench.mutate.mutants import mutants_of
 from bench.mutate.reach import Reach, static_lines
-from bench.mutate.run import draw
 
 ROOT = Path(__file__).parents[2]
 

@@ -13,12 +13,11 @@ from plyfile import PlyData
 from bench.accuracy.truth import load_truth
 from bench.scenes.blades import build_row, surface_point
 from bench.scenes.detector import Detector, Visible
-from bench.scenes.drawn import DRAWN
 from bench.scenes.make import frame_times, is_made, make_scene
 from bench.scenes.path import make_path
 from bench.scenes.render import Painter, true_lens
 from bench.scenes.spec import Lens, Scene, Span
-from bench.scenes.suite import CALIBRATION, SUITE
+from bench.scenes.suite import CALIBRATION, DRAWN, SUITE
 from bench.scenes.table import markdown
 from core.video.decode import iter_frames
 

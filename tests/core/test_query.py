@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cli.arguments import parser
+from cli.arguments import parser, with_negative_values
 from cli.main import main
-from cli.parser import with_negative_values
 from core.errors import BadInput
 from core.query import Result, defect_place
 from core.surface.ply import Mesh, write_mesh

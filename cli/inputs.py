@@ -1,13 +1,14 @@
-"""`bladeatlas check`: what was understood of an annotation file."""
+"""`bladeatlas probe` and `check`: what a video is, and what was understood of an annotation file."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from itertools import pairwise
 from typing import Any
 
 from cli.parameters import parse_assignment
-from cli.probe import notes
+from cli.progress import duration
 from cli.terminal import say, say_json
 from core.annotations.parse import load_annotations
 from core.annotations.placed import place
@@ -16,9 +17,51 @@ from core.errors import BadInput
 from core.settings import make_settings
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video
+from core.video.table import FrameTable, VideoInfo
 
 
-def command(parsed: argparse.Namespace) -> int:
+def probe(parsed: argparse.Namespace) -> int:
+    """Decode the whole video once and say what it holds; a damaged video is described, not refused."""
+    table = probe_video(parsed.video, allow_truncated=True, stream=parsed.stream)
+    if parsed.json:
+        say_json({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1)
+        return 0
+    info, gaps = table.info, _gaps(table)
+    steps = f"{gaps['min_step_s']:.4f} to {gaps['max_step_s']:.4f} s"
+    say(
+        f"{parsed.video.name}: {info.width}x{info.height}, {info.codec}, {info.n_frames} frames",
+        f"  duration {duration(info.duration_s)}, {float(info.average_rate):.4g} frames/s on average",
+        f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate",
+        *(f"  {note}" for note in notes(info)),
+    )
+    return 0
+
+
+def notes(info: VideoInfo) -> list[str]:
+    """What somebody should know of a video before using it; empty for an ordinary sound one."""
+    found = []
+    if info.rotation_deg:
+        found.append(f"rotated by {info.rotation_deg} degrees; size and boxes are of the frame as shown")
+    if info.streams:
+        streams = "; ".join(info.streams)
+        found.append(f"stream {info.stream} was read of {streams} (--set input.video_stream=N for another)")
+    if info.joined:
+        found.append(f"joined from {len(info.joined) + 1} recordings, at frame {', '.join(map(str, info.joined))}")
+    if info.repaired_times:
+        found.append(f"{info.repaired_times} frames have no usable time in the file; it is made from the frame rate")
+    if info.truncated:
+        found.append(f"damaged: {'; '.join(info.damage)} (a run needs --allow-truncated)")
+    return found
+
+
+def _gaps(table: FrameTable) -> dict[str, float | bool]:
+    times = [row.time_s for row in table.rows]
+    steps = [later - earlier for earlier, later in pairwise(times)]
+    shortest, longest = min(steps), max(steps)
+    return {"min_step_s": shortest, "max_step_s": longest, "variable_rate": longest > 1.5 * shortest}
+
+
+def check(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
     options = input_options(parsed.assignments)
     annotations = load_annotations(parsed.annotations)

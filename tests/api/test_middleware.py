@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 from api.problems import MEDIA_TYPE
 from store.keys import Keys
 from tests.api.conftest import TUS, Backend, client_of
-from tests.api.test_creating import form
+from tests.api.test_submit import form
 
 ID = "0" * 32
 HIDDEN = [

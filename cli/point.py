@@ -7,7 +7,7 @@ import math
 
 from cli.terminal import say, say_json
 from core.errors import BadInput
-from core.mapping.rows import REASONS
+from core.scene.detection import REASONS
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -24,7 +24,7 @@ def command(parsed: argparse.Namespace) -> int:
     if parsed.json:
         say_json({"schema_version": 1, "source_index": frame, **shown.to_dict()}, indent=1)
     elif shown.point is None:
-        say(f"frame {frame} shows nothing there: {REASONS[str(shown.reason)]}")
+        say(f"frame {frame} shows nothing there: {'' if shown.reason is None else REASONS[shown.reason]}")
     else:
         say(
             f"frame {frame} at {shown.time_s:.3f} s, pixel {x:g}, {y:g}",

@@ -14,8 +14,8 @@ from sqlalchemy import ColumnElement, Select, literal, select, tuple_
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
-from core.mapping.rows import DETECTION_COLUMNS
-from core.report.rows import CASE_COLUMNS
+from core.scene.case import CASE_COLUMNS
+from core.scene.detection import DETECTION_COLUMNS
 from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow, TableVersion

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from core.flags import Severity, Verdict
-from core.mapping.rows import Outcome
+from core.scene.detection import Outcome
 from core.states import AttemptOutcome, InspectionState, RunState, StageState, TaskState, run_state
 
 ROOT = Path(__file__).parents[1]

@@ -19,7 +19,7 @@ from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
 from api.parameters import Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
-from core.mapping.rows import Outcome
+from core.scene.detection import Outcome
 from store.artifact_rows import ArtifactRows
 from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state

@@ -33,7 +33,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int, n_pairs: int = 60) -
     pairs = draw_pairs(run, n_pairs)
     features = {frame: run.features(frame) for pair in pairs for frame in pair}
     settings = run.settings
-    verifier = Verifier(read_camera(run.folder("camera") / "camera.json"), settings.verification, settings.seed)
+    verifier = Verifier(read_camera(run.folder("camera")), settings.verification, settings.seed)
     methods: dict[str, MatchSettings] = {
         name: settings.matching.model_copy(update={"method": name}) for name in ("auto", "lightglue")
     }

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from core.annotations import checks
-from core.annotations.model import Annotations, Detection, Entry, Mask, Polygon
+from core.annotations.model import Annotations, Entry
 from core.annotations.read import read_json
 from core.geometry.boxes import Box, box_iou
+from core.scene.detection import Detection, Mask, Polygon
 
 MIN_MASK_IOU = 0.5
 """A mask with the same label and at least this overlap of boxes belongs to a detection."""
@@ -48,7 +49,7 @@ def parse_annotations(value: Any) -> Annotations:
         detections = []
         for i, item in enumerate(boxes):
             fields = _detection_fields(item, f"{path}.detections[{i}]", masks, warnings)
-            detections.append(Detection(id=next_id, key=key, time=time, **fields))
+            detections.append(Detection(id=next_id, key=key, time_s=float(time), **fields))
             next_id += 1
         entries.append(Entry(key, time, tuple(detections), masks))
     return Annotations(tuple(entries), tuple(warnings))

@@ -16,7 +16,7 @@ from core.gallery.boxes import FrameBoxes, frame_file
 from core.gallery.defects import DefectLine
 from core.gallery.evidence import Evidence
 from core.gallery.palette import RGB
-from core.mapping.rows import REASONS, DetectionRow, Outcome
+from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
 
 
 def _e(value: object) -> str:
@@ -187,7 +187,7 @@ def _item(row: DetectionRow, color: RGB) -> str:
     defect = "" if row.defect_id is None else str(row.defect_id)
     score = f" {row.score:.2f}" if row.score is not None else ""
     state = f"D{defect}" if defect else (row.reason or row.outcome).replace("_", " ")
-    hint = REASONS.get(row.reason or "", f"{row.support_points} support points")
+    hint = f"{row.support_points} support points" if row.reason is None else REASONS[row.reason]
     swatch = f'<span class="dot" style="background:rgb({color[0]},{color[1]},{color[2]})"></span>'
     return (
         f'<li data-label="{_e(row.label)}" data-outcome="{_e(row.outcome)}" data-defect="{_e(defect)}">{swatch}'
@@ -197,6 +197,6 @@ def _item(row: DetectionRow, color: RGB) -> str:
 
 
 def _without_frame(rows: Sequence[DetectionRow]) -> str:
-    outside = sum(row.reason == "no_frame" for row in rows)
+    outside = sum(row.reason == Reason.NO_FRAME for row in rows)
     legend = "Solid boxes are on the surface, dashed boxes are not."
     return f"{legend} {outside} detections lie outside the video and have no frame." if outside else legend

@@ -16,8 +16,8 @@ from core.mapping.depth_witness import DepthMaps
 from core.mapping.sigma import PoseCovariance, pose_covariance
 from core.mapping.support import Observations
 from core.mapping.surface import Surface
-from core.mapping.views import Views
-from core.roi import Crop
+from core.scene.frame import Crop
+from core.scene.views import Views
 from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]

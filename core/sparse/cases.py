@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from core.checks.stats import ModelStats, model_stats
+from core.scene.case import StartMode
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, free_distortion, transfer_poses, triangulate
 from core.sparse.initial_pair import rank_initial_pairs
@@ -14,7 +15,7 @@ from core.sparse.mapper import Progress, best_model, map_images, mapper_options,
 from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import Tracks, build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import Frames, read_frames, within
-from core.viewgraph import PairTable, read_table
+from core.viewgraph import PairTable, database_of, read_graph
 
 MIN_MATCHES = 15
 """Inliers below which a pair takes no part; COLMAP's default."""
@@ -48,8 +49,7 @@ class CaseResult:
 
     frames: int
     models: int
-    start_mode: str
-    """``scratch``, ``warm``, or ``warm_then_scratch`` when a warm start was tried and was worse."""
+    start_mode: StartMode
     model: Any | None
     stats: ModelStats
     reason: str = ""
@@ -63,18 +63,18 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
         start_model: model of another case to start from; None maps from scratch.
         progress: see `core.sparse.mapper.Progress`.
     """
-    frames = read_frames(case.graph / "database.db", case.start, case.end)
-    table = within(read_table(case.graph / "graph.npz"), case.start, case.end)
+    frames = read_frames(database_of(case.graph), case.start, case.end)
+    table = within(read_graph(case.graph), case.start, case.end)
     tracks = build_tracks(table)
     n_frames = len(frames.names)
     reason = _why_not(table, frames, tracks, case.settings)
     if reason:
-        return CaseResult(n_frames, 0, "scratch", None, NO_MODEL, reason)
+        return CaseResult(n_frames, 0, StartMode.SCRATCH, None, NO_MODEL, reason)
     window = _Window(case, frames, table, tracks, progress)
     warm = None if start_model is None else window.map_warm(start_model)
     if warm is not None and not _is_worse(warm, start_model, n_frames):
-        return CaseResult(n_frames, 1, "warm", warm, model_stats(warm))
-    mode = "scratch" if start_model is None else "warm_then_scratch"
+        return CaseResult(n_frames, 1, StartMode.WARM, warm, model_stats(warm))
+    mode = StartMode.SCRATCH if start_model is None else StartMode.WARM_THEN_SCRATCH
     n_models, best = window.map_scratch()
     # A wrong model can have more points than a right one, its tracks being broken: only images count here.
     if warm is not None and (best is None or warm.num_reg_images() > best.num_reg_images()):
@@ -95,7 +95,7 @@ class _Window:
         self._table, self._tracks = table, tracks
         tuned = case.settings.bundle_adjustment == "tuned"
         self._options = mapper_options(case.settings, threads=case.threads, seed=case.seed, tuned=tuned)
-        self._full = open_cache(case.graph / "database.db", frames.names, MIN_MATCHES)
+        self._full = open_cache(database_of(case.graph), frames.names, MIN_MATCHES)
         self._search = self._full
         if case.settings.search_tracks:
             chosen = choose_keypoints(tracks, frames, case.settings.search_tracks)

@@ -12,6 +12,7 @@ from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
 from core.flags import error_codes
+from core.scene.case import CaseStatus
 from core.task_key import parts_of
 
 Row = Mapping[str, Any]
@@ -35,7 +36,7 @@ def standing(row: Row, veto: bool = True) -> Standing:
 
 def rank(rows: Sequence[Row], veto: bool = True) -> list[Row]:
     """Cases that have a model, best first; equal ones keep the order of their names."""
-    with_model = [row for row in rows if row["status"] == "succeeded"]
+    with_model = [row for row in rows if row["status"] == CaseStatus.SUCCEEDED]
     by_name = sorted(with_model, key=lambda row: str(row["name"]))
     return sorted(by_name, key=lambda row: standing(row, veto), reverse=True)
 

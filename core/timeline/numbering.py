@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
+from core.scene.defect import DefectRecord, EventRow
+from core.scene.detection import DetectionRow
 from core.stage import Facts
 from core.task_key import piece_of, stage_of
-from core.timeline.events import EventRow
 
 I32 = NDArray[np.int32]
 
@@ -39,15 +38,15 @@ class Start:
         """Events."""
         return [replace(row, event_id=row.event_id + self.event, defect_id=row.defect_id + self.defect) for row in rows]
 
-    def records(self, records: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        """Records of ``defects.json``."""
+    def records(self, records: Sequence[DefectRecord]) -> list[DefectRecord]:
+        """Defects."""
         return [
-            {
-                **record,
-                "id": record["id"] + self.defect,
-                "events": [event + self.event for event in record["events"]],
-                "evidence": f"gallery/{evidence_name(record['id'] + self.defect)}",
-            }
+            replace(
+                record,
+                id=record.id + self.defect,
+                events=tuple(event + self.event for event in record.events),
+                evidence=f"gallery/{evidence_name(record.id + self.defect)}",
+            )
             for record in records
         ]
 

@@ -11,7 +11,7 @@ import pytest
 from core.errors import StageFailed
 from core.frames.export import export_frames
 from core.frames.sampling import ChosenFrame
-from core.roi import Crop
+from core.scene.frame import Crop
 from core.video.decode import iter_frames
 from core.video.probe import probe_video
 from tests.core.making_videos import every_ms, make_video

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 from core.flags import FLAG_CODES
-from core.mapping.rows import DETECTION_COLUMNS, REASONS
 from core.report.build import build_report
-from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS
-from core.timeline.events import TIMELINE_COLUMNS
+from core.scene.case import CASE_COLUMNS
+from core.scene.defect import TIMELINE_COLUMNS
+from core.scene.detection import DETECTION_COLUMNS, REASONS
+from core.scene.frame import FRAME_COLUMNS
 from tests.core.making_record import full_record
 
 DOCS = Path(__file__).parents[3] / "docs"

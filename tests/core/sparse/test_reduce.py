@@ -1,19 +1,21 @@
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from core.errors import NoReconstruction, StageFailed
-from core.roi import Crop
+from core.io.annotations import write_annotations
+from core.io.frames import write_frames
+from core.scene.frame import Crop
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
 from core.sparse.reduce import reduce_cases, reduce_refined
 from core.stage import StageTask
 from core.stages import reduce_coarse, reduce_refine
+from tests.core.making_rows import detection, run_frames
 from tests.core.sparse.scene import HEIGHT, WIDTH, make_scene, view_graph, write_graph
 
 
@@ -146,15 +148,11 @@ def test_the_stage_counts_the_detections_of_every_model(tmp_path: Path) -> None:
         model.write_binary(inputs[key] / "model")
         facts[key] = row(key.split("/")[1], model.num_reg_images(), model.num_points3D())
     crop = Crop(0, 0, WIDTH, HEIGHT, WIDTH, HEIGHT)
-    box = {"id": 0, "key": "1.7", "time_s": 1.7, "label": "dent", "box": [0.2, 0.2, 0.8, 0.8], "source_index": 34}
-    for name, value in (
-        ("frames/crop.json", crop.to_dict()),
-        ("frames/frames.json", [{"index": i, "source_index": 2 * i} for i in range(20)]),
-        ("annotations/detections.json", [box]),
-    ):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(json.dumps(value))
-        inputs[name.split("/")[0]] = (tmp_path / name).parent
+    for name in ("frames", "annotations"):
+        inputs[name] = tmp_path / name
+        inputs[name].mkdir()
+    write_frames(inputs["frames"], run_frames(20, 0.05, every=2), crop)
+    write_annotations(inputs["annotations"], [detection(0, 1.7, (0.2, 0.2, 0.8, 0.8), 34)], {}, [34])
     for prefer, winner in ((True, "refine_000"), (False, "seg_000")):
         out = tmp_path / str(prefer)
         settings = make_settings("default", {"model.prefer_verified": prefer})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.timeline.clusters import cluster_detections, cluster_radius
+from core.thesis.grouping import cluster_detections, cluster_radius
 from tests.core.making_rows import mapped, unplaced
 
 

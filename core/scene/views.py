@@ -1,4 +1,4 @@
-"""All registered views of a model at once: rays of pixels, projections of points."""
+"""The posed views of a model, all at once: rays of pixels, projections of points."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.mapping.rows import DETECTION_COLUMNS, REASONS, outcome_counts, rows_without_model, unplaced_row
+from core.scene.detection import DETECTION_COLUMNS, REASONS, outcome_counts, rows_without_model, unplaced_row
 from tests.core.making_rows import detection, mapped, unplaced
 
 CONTRACT = (

@@ -21,9 +21,7 @@ Pair = tuple[int, int]
 def draw_pairs(run: FinishedRun, count: int, seed: int = 0) -> list[Pair]:
     """Pairs drawn without replacement from the whole pair list of the run, in order."""
     frames = run.frames()
-    times = [float(row["time_s"]) for row in frames]
-    n_search = sum(row["role"] != "added" for row in frames)
-    pairs = match_pairs(times, n_search, run.settings.matching.window)
+    pairs = match_pairs(frames.times_s, frames.n_search, run.settings.matching.window)
     return sorted(random.Random(seed).sample(pairs, min(count, len(pairs))))
 
 

@@ -34,6 +34,15 @@ class StartMode(StrEnum):
     """A warm start was tried and was worse."""
 
 
+class CaseReason(StrEnum):
+    """Why a case came to its end without a model."""
+
+    TOO_FEW_FRAMES = "too_few_frames"
+    TOO_FEW_MATCHES = "too_few_matches"
+    NO_PARALLAX = "no_parallax"
+    NO_INITIAL_PAIR = "no_initial_pair"
+
+
 @dataclass(frozen=True)
 class CaseRow:
     """One row of ``cases.csv``; the fields are its columns, in order."""
@@ -47,7 +56,7 @@ class CaseRow:
     """One behind the last."""
     status: CaseStatus
     reason: str | None
-    """Code of why there is no model; None when it succeeded."""
+    """A `CaseReason`, of a case that failed the code of its error; None when it succeeded."""
     frames: int
     """Offered."""
     models: int

@@ -65,7 +65,7 @@ def _row(task: StageTask, kind: CaseKind, result: CaseResult) -> dict[str, Any]:
         "start": int(task.args["start"]),
         "end": int(task.args["end"]),
         "status": CaseStatus.NO_MODEL if result.model is None else CaseStatus.SUCCEEDED,
-        "reason": result.reason,
+        "reason": result.reason or "",
         "frames": result.frames,
         "models": result.models,
         "registered_images": stats.registered_images,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from core.checks.stats import ModelStats, model_stats
-from core.scene.case import StartMode
+from core.scene.case import CaseReason, StartMode
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, free_distortion, transfer_poses, triangulate
 from core.sparse.initial_pair import rank_initial_pairs
@@ -45,14 +45,14 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseResult:
-    """How a case ended. `model` is None when there is none, then `reason` is a code."""
+    """How a case ended. `model` is None when there is none, then `reason` says why."""
 
     frames: int
     models: int
     start_mode: StartMode
     model: Any | None
     stats: ModelStats
-    reason: str = ""
+    reason: CaseReason | None = None
 
 
 def run_case(case: Case, start_model: Any | None = None, progress: Progress | None = None) -> CaseResult:
@@ -80,7 +80,7 @@ def run_case(case: Case, start_model: Any | None = None, progress: Progress | No
     if warm is not None and (best is None or warm.num_reg_images() > best.num_reg_images()):
         n_models, best = 1, warm
     if best is None:
-        return CaseResult(n_frames, 0, mode, None, NO_MODEL, "no_initial_pair")
+        return CaseResult(n_frames, 0, mode, None, NO_MODEL, CaseReason.NO_INITIAL_PAIR)
     return CaseResult(n_frames, n_models, mode, best, model_stats(best))
 
 
@@ -142,11 +142,11 @@ def _is_worse(model: Any, start_model: Any, n_frames: int) -> bool:
     return errors[0] > ERROR_RISE * errors[1]
 
 
-def _why_not(table: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> str:
-    """Code of what makes mapping pointless; empty when nothing does."""
+def _why_not(table: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> CaseReason | None:
+    """What makes mapping pointless; None when nothing does."""
     if len(frames.names) < settings.min_model_size:
-        return "too_few_frames"
+        return CaseReason.TOO_FEW_FRAMES
     if not (table.n_inliers >= settings.init_min_num_inliers).any():
-        return "too_few_matches"
+        return CaseReason.TOO_FEW_MATCHES
     residual = rotation_residual_px(tracks, frames)
-    return "no_parallax" if residual is not None and residual < MIN_RESIDUAL_PX else ""
+    return CaseReason.NO_PARALLAX if residual is not None and residual < MIN_RESIDUAL_PX else None

@@ -170,7 +170,9 @@ def graph_facts(table: PairTable, n_frames: int) -> dict[str, Any]:
     }
 
 
-def write_database(path: Path, camera: Any, keypoints: Iterable[NDArray[np.float32]], table: PairTable) -> None:
+def write_database(
+    path: Path, camera: pycolmap.Camera, keypoints: Iterable[NDArray[np.float32]], table: PairTable
+) -> None:
     """Write COLMAP's database: one camera, a trivial rig, one image and frame for every item of `keypoints`.
 
     Image `i` is called ``{i:04d}.jpg`` and has image_id = frame_id = i + 1. The mapper reads verified
@@ -194,7 +196,7 @@ def write_database(path: Path, camera: Any, keypoints: Iterable[NDArray[np.float
             database.write_two_view_geometry(first + 1, second + 1, _geometry(table, row))
 
 
-def _write_image(database: Any, camera: Any, index: int, points: NDArray[np.float32]) -> None:
+def _write_image(database: pycolmap.Database, camera: pycolmap.Camera, index: int, points: NDArray[np.float32]) -> None:
     image = pycolmap.Image(name=image_name(index), camera_id=camera.camera_id, image_id=index + 1)
     database.write_image(image, use_image_id=True)
     frame = pycolmap.Frame()
@@ -204,7 +206,7 @@ def _write_image(database: Any, camera: Any, index: int, points: NDArray[np.floa
     database.write_keypoints(index + 1, np.ascontiguousarray(points, np.float32))
 
 
-def _geometry(table: PairTable, row: int) -> Any:
+def _geometry(table: PairTable, row: int) -> pycolmap.TwoViewGeometry:
     """One row as COLMAP's two-view geometry, its motion included."""
     geometry = pycolmap.TwoViewGeometry()
     geometry.config = int(table.config[row])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 from core.checks.model import is_wrong
 from core.checks.stats import model_stats
@@ -14,8 +14,11 @@ from core.sparse.confirm import confirmed_or_searched
 from core.stage import StageResult, StageTask
 from core.viewgraph import read_graph
 
+if TYPE_CHECKING:
+    import pycolmap
 
-def _veto(case: Case) -> Callable[[Any], bool]:
+
+def _veto(case: Case) -> Callable[[pycolmap.Reconstruction], bool]:
     table = read_graph(case.graph)
     return lambda model: is_wrong(model, table, case.end - case.start)
 

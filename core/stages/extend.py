@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -25,6 +25,9 @@ from core.stage import Facts, StageResult, StageTask
 from core.video.still import read_still
 from core.viewgraph import PairTable, database_of, read_graph
 
+if TYPE_CHECKING:
+    import pycolmap
+
 
 def run(task: StageTask) -> StageResult:
     """Write the final model, the list of its frames and what speaks against it."""
@@ -34,7 +37,7 @@ def run(task: StageTask) -> StageResult:
     model = read_model(task.input("pieces" if task.piece else "confirm"), task.piece)
     table = read_graph(graph)
 
-    def vetoed(candidate: Any) -> bool:
+    def vetoed(candidate: pycolmap.Reconstruction) -> bool:
         return settings.veto and is_wrong(candidate, table, n_frames, n_search)
 
     if settings.register_rest and not task.piece:
@@ -76,7 +79,7 @@ def run(task: StageTask) -> StageResult:
     return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": loose})
 
 
-def _adjust(task: StageTask, model: Any) -> Adjustment:
+def _adjust(task: StageTask, model: pycolmap.Reconstruction) -> Adjustment:
     names = {model.image(image_id).name for image_id in model.reg_image_ids()}
     return adjust(
         model,
@@ -105,7 +108,9 @@ def _aligner(task: StageTask) -> Align:
     return lambda model, drop: align_keypoints(model, read, still, drop=drop, threads=task.threads)
 
 
-def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int) -> Facts:
+def _facts(
+    model: pycolmap.Reconstruction, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int
+) -> Facts:
     stats = model_stats(model)
     flags = check_model(model, stats, vars(table), n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:

@@ -13,12 +13,16 @@ from pathlib import Path
 from typing import TypeGuard
 
 import pytest
+from pydantic import BaseModel
 
+from api import table_schemas
 from core.flags import Severity, Verdict
-from core.scene.case import CaseKind, CaseReason, CaseStatus, StartMode
-from core.scene.detection import Outcome, PlacementMethod, Reason
+from core.scene.case import CASE_COLUMNS, CaseKind, CaseReason, CaseStatus, StartMode
+from core.scene.defect import TIMELINE_COLUMNS
+from core.scene.detection import DETECTION_COLUMNS, Outcome, PlacementMethod, Reason
 from core.scene.frame import Role
 from core.states import AttemptOutcome, InspectionState, RunState, StageState, TaskState, run_state
+from store import models
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("core", "store", "worker", "api", "cli", "bench")
@@ -185,6 +189,40 @@ def test_a_run_ends_as_its_inspection_or_failed() -> None:
     assert run_state(InspectionState.PARTIAL) is RunState.PARTIAL
     assert run_state(InspectionState.CANCELLED) is RunState.CANCELLED
     assert run_state(InspectionState.RUNNING) is RunState.FAILED
+
+
+def asks_for_the_method(tree: ast.AST) -> list[int]:
+    """Lines that read the setting `mapping.method`."""
+    return [
+        node.lineno
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and node.attr == "method" and _name(node.value) == "mapping"
+    ]
+
+
+def test_a_stage_asks_for_the_mapping_method_once() -> None:
+    lines = {path: asks_for_the_method(tree) for path, tree in sources() if path.startswith("core/")}
+    assert lines["core/stages/map_defects.py"]
+    assert not {path: found for path, found in lines.items() if len(found) > 1}
+    assert not [
+        path for path, found in lines.items() if found and not path.startswith(("core/stages/", "core/report/"))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("columns", "row", "schema"),
+    [
+        (CASE_COLUMNS, models.CaseRow, table_schemas.Case),
+        (DETECTION_COLUMNS, models.DetectionRow, table_schemas.Detection),
+        (TIMELINE_COLUMNS, models.EventRow, table_schemas.Event),
+    ],
+)
+def test_database_and_api_have_the_columns_that_the_scene_declares(
+    columns: tuple[str, ...], row: type[models.Base], schema: type[BaseModel]
+) -> None:
+    stored = tuple(column.name for column in row.__table__.columns)
+    assert tuple(name for name in stored if name not in ("inspection_id", "task_key")) == columns
+    assert tuple(schema.model_fields) == columns
 
 
 def file_names(tree: ast.AST) -> Iterator[str]:

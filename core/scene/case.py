@@ -114,5 +114,3 @@ class CaseRow:
 
 CASE_COLUMNS: tuple[str, ...] = tuple(CaseRow.__dataclass_fields__)
 """Columns of ``cases.csv``."""
-CASE_FACTS: tuple[str, ...] = tuple(name for name in CASE_COLUMNS if name not in ("seconds", "selected", "vetoed"))
-"""Those that the case itself knows, in their order."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from core.scene.case import CASE_COLUMNS, CASE_FACTS, CaseRow, CaseStatus, StartMode
+from core.scene.case import CASE_COLUMNS, CaseRow, CaseStatus, StartMode
 from core.scene.defect import Confidence, DefectRecord, EventRow, Sighting
 from core.scene.detection import Detection, DetectionRow
 from core.scene.frame import FRAME_COLUMNS, Frame, FrameRow, Role, RunFrames, frames_of, image_name, index_of_image
@@ -81,7 +81,7 @@ def test_the_frame_table_is_by_index_and_knows_its_search() -> None:
 
 
 def test_a_case_out_of_its_facts() -> None:
-    facts: dict[str, Any] = dict.fromkeys(CASE_FACTS, 0)
+    facts: dict[str, Any] = dict.fromkeys(CASE_COLUMNS[:-4], 0)
     facts |= {"name": "seg_000_0000_0180", "kind": "coarse", "status": "succeeded", "reason": "", "start_mode": "warm"}
     row = CaseRow.from_facts({**facts, "vetoed": 1, "checks": []}, seconds=2.5, selected=True)
     assert (row.status, row.start_mode, row.reason) == (CaseStatus.SUCCEEDED, StartMode.WARM, None)

@@ -18,8 +18,7 @@ from core.surface.glb import write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.task_key import key_of
 from core.thesis.grouping import ThesisGrouping
-from core.timeline.grouping import SurfaceGrouping
-from core.timeline.numbering import Start
+from core.timeline.grouping import Start, SurfaceGrouping
 
 
 def run(task: StageTask) -> StageResult:

@@ -17,7 +17,7 @@ from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
 from core.scene.defect import EventRow
 from core.scene.detection import DetectionRow, Outcome
-from core.timeline.numbering import Start
+from core.timeline.grouping import Start
 from tests.core.making_record import full_record
 from tests.core.making_rows import defect, mapped, unplaced
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.scene.defect import EventRow
-from core.timeline.numbering import Start
+from core.timeline.grouping import Start
 from tests.core.making_rows import defect, mapped, unplaced
 
 FACTS = {

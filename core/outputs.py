@@ -9,14 +9,21 @@ from core.stage import Facts
 from core.task_key import key_of
 
 SPARSE = "sparse"
+"""Folder of the sparse model."""
 FUSED = "dense/fused.ply"
+"""Fused point cloud."""
 SURFACE = "dense/mesh_poisson.ply"
+"""Supported surface."""
 DEFECT_SURFACE = "mapping/mesh_defects.ply"
+"""Surface in the colours of its defects."""
 DEFECTS = "mapping/defects.json"
+"""Records of the defects."""
 FRAMES = "frames.csv"
+"""Frames that took part."""
 QUALITY = "quality.json"
+"""Verdict, flags and counts."""
 SUMMARY = "summary.json"
-"""Published paths that others name too."""
+"""What ran, and the headline numbers; written last."""
 BEST_CASE = "{best}"
 """Stands for the task of the case that the search chose."""
 

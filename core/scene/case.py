@@ -50,23 +50,29 @@ class CaseRow:
     name: str
     """The thesis's name, e.g. ``seg_000_0000_0180``."""
     kind: CaseKind
+    """Pass of the search."""
     start: int
     """First frame of its window."""
     end: int
     """One behind the last."""
     status: CaseStatus
+    """How it ended."""
     reason: str | None
     """A `CaseReason`, of a case that failed the code of its error; None when it succeeded."""
     frames: int
-    """Offered."""
+    """Frames offered to the mapper."""
     models: int
-    """That the mapper made; the best of them counts."""
+    """Models that the mapper made; the best of them counts."""
     registered_images: int
+    """Images of the best model; 0 without one."""
     points3D: int  # noqa: N815  (COLMAP's name, and the column's)
+    """3D points of the best model."""
     mean_reprojection_error_px: float | None
+    """Over the observations of the best model; None for a case that failed."""
     median_reprojection_error_px: float | None
+    """The same, median."""
     seconds: float | None
-    """Of its task; None while it is not known."""
+    """Time that its task took; None while it is not known."""
     start_mode: StartMode | None
     """None for a case that failed."""
     selected: int

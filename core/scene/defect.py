@@ -40,21 +40,27 @@ class EventRow:
     event_id: int
     """By start, from 0."""
     defect_id: int
+    """Record of ``mapping/defects.json`` that was visited."""
     label: str
+    """The most frequent one of its detections."""
     start_s: float
     """Time of its first detection."""
     end_s: float
     """Time of its last detection."""
     n_detections: int
+    """Detections of the defect in this visit."""
     n_frames: int
-    """Frames with a detection."""
+    """Frames with one of them."""
     x: float
-    """Mean place of its detections, in the world frame of the model."""
+    """Mean place of its detections, in the world frame of the model, scene units."""
     y: float
+    """The same, second coordinate."""
     z: float
+    """The same, third coordinate."""
     radius: float
     """Largest distance of a detection's place from the mean, scene units."""
     confidence: float | None
+    """Probability that the defect was really seen; None where the rules give none."""
 
     def to_dict(self) -> dict[str, Any]:
         """Flat JSON form, keys in the order of the columns."""

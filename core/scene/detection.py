@@ -117,18 +117,21 @@ class DetectionRow:
     time_s: float
     """Seconds from the first frame."""
     label: str
+    """As the input says it."""
     score: float | None
+    """Of the detector, in [0, 1]; None where the input has none."""
     box_x1: float
-    """Left, as a share of the source frame's width."""
+    """Left edge, as a share of the source frame's width."""
     box_y1: float
-    """Upper, as a share of the source frame's height."""
+    """Upper edge, as a share of the source frame's height."""
     box_x2: float
-    """Right."""
+    """Right edge, as a share of the width."""
     box_y2: float
-    """Lower."""
+    """Lower edge, as a share of the height."""
     frame_index: int | None
     """Row of frames.csv that was used, or that shows the detection but is not registered."""
     outcome: Outcome
+    """What became of it."""
     reason: Reason | None
     """Why it is not mapped; None for a mapped one."""
     rung: PlacementMethod | None
@@ -136,14 +139,17 @@ class DetectionRow:
     support_points: int
     """Sparse points that support the place."""
     x: float | None
-    """Place in the world frame of `model`."""
+    """Place in the world frame of `model`, scene units; None without one."""
     y: float | None
+    """The same, second coordinate."""
     z: float | None
+    """The same, third coordinate."""
     confidence: float | None
-    """Probability that the detection is real and its place right."""
+    """Probability that the detection is real and its place right; None where the rules give none."""
     blade: str | None
+    """Name of the blade that it lies on; None while blades are not told apart."""
     defect_id: int | None
-    """Record of ``mapping/defects.json`` that it belongs to."""
+    """Record of ``mapping/defects.json`` that it belongs to; None for none."""
     model: int | None
     """Number of the model that `x`, `y`, `z` refer to."""
 

@@ -41,6 +41,7 @@ class Frame:
     sha256: str
     """Of the RGB24 bytes of the whole frame before the crop, hex."""
     role: Role
+    """Why it takes part."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON form."""

@@ -166,7 +166,7 @@ def _weights() -> F64:
 
 
 def _views(model: pycolmap.Reconstruction) -> Views:
-    """The registered images, their poses in memory one behind the other: sums over strided ones differ in bits."""
+    """The registered images. Their poses are made contiguous: sums over strided arrays may differ in the last bit."""
     views = views_of(model)
     return replace(views, R=np.ascontiguousarray(views.R), t=np.ascontiguousarray(views.t))
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import json
+import textwrap
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -89,3 +92,17 @@ def test_a_case_out_of_its_facts() -> None:
     assert tuple(row.to_dict()) == CASE_COLUMNS
     with pytest.raises(ValueError, match="lukewarm"):
         CaseRow.from_facts({**facts, "start_mode": "lukewarm"}, seconds=None, selected=False)
+
+
+@pytest.mark.parametrize("kind", [Frame, FrameRow, CaseRow, DetectionRow, EventRow])
+def test_every_column_says_what_it_holds(kind: type) -> None:
+    body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0].body  # type: ignore[attr-defined]
+    fields = [k for k, node in enumerate(body) if isinstance(node, ast.AnnAssign)]
+    silent = [body[k].target.id for k in fields if not _is_docstring(body[k + 1])]
+    assert fields
+    assert not silent
+
+
+def _is_docstring(node: ast.AST) -> bool:
+    text = node.value.value if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) else None
+    return isinstance(text, str) and text.endswith(".")

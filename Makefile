@@ -56,7 +56,7 @@ bench-service: setup ## time uploads, downloads, many clients and the queue
 soak: setup ## jobs through a whole deployment while its processes are killed (hours; SOAK="--toy": a minute)
 	$(BIN)/bladeatlas-bench soak out/soak $(SOAK)
 
-mutate: setup ## change the code of AREA (placement, defects, annotations, points, plan) in 60 places, list what its tests miss
+mutate: setup ## change the code of AREA (placement, defects, thesis, scene, annotations, points, plan) in 60 places, list what its tests miss
 	$(BIN)/bladeatlas-bench mutate $(AREA)
 
 versions: setup ## record the code behind each stage's version (SAME="how results were compared", when they are the same)

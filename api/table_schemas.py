@@ -8,10 +8,10 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from core.mapping.rows import DetectionRow
-from core.report.columns import columns_of
-from core.report.rows import CaseRow
-from core.timeline.rows import EventRow
+from core.scene.case import CaseRow
+from core.scene.columns import columns_of
+from core.scene.defect import EventRow
+from core.scene.detection import DetectionRow
 from store.tables import CASES, DETECTIONS, TIMELINE, Table
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from cli.terminal import say, say_json
 from core.errors import BadInput
-from core.mapping.rows import REASONS
+from core.scene.detection import REASONS, Reason
 
 
 def point(parsed: argparse.Namespace) -> int:
@@ -29,7 +29,7 @@ def point(parsed: argparse.Namespace) -> int:
     if parsed.json:
         say_json({"schema_version": 1, "source_index": frame, **shown.to_dict()}, indent=1)
     elif shown.point is None:
-        say(f"frame {frame} shows nothing there: {REASONS[str(shown.reason)]}")
+        say(f"frame {frame} shows nothing there: {REASONS[Reason(str(shown.reason))]}")
     else:
         say(
             f"frame {frame} at {shown.time_s:.3f} s, pixel {x:g}, {y:g}",

@@ -8,6 +8,22 @@ from dataclasses import dataclass
 from core.stage import Facts
 from core.task_key import key_of
 
+SPARSE = "sparse"
+"""Folder of the sparse model."""
+FUSED = "dense/fused.ply"
+"""Fused point cloud."""
+SURFACE = "dense/mesh_poisson.ply"
+"""Supported surface."""
+DEFECT_SURFACE = "mapping/mesh_defects.ply"
+"""Surface in the colours of its defects."""
+DEFECTS = "mapping/defects.json"
+"""Records of the defects."""
+FRAMES = "frames.csv"
+"""Frames that took part."""
+QUALITY = "quality.json"
+"""Verdict, flags and counts."""
+SUMMARY = "summary.json"
+"""What ran, and the headline numbers; written last."""
 BEST_CASE = "{best}"
 """Stands for the task of the case that the search chose."""
 
@@ -27,11 +43,11 @@ class Output:
 
 
 OUTPUTS: tuple[Output, ...] = (
-    Output("sparse", (("extend", "model"), ("confirm", "model"), (BEST_CASE, "model")), folder=True),
-    Output("dense/fused.ply", (("fuse", "fused.ply"),)),
-    Output("dense/mesh_poisson.ply", (("mesh", "mesh_poisson.ply"),)),
+    Output(SPARSE, (("extend", "model"), ("confirm", "model"), (BEST_CASE, "model")), folder=True),
+    Output(FUSED, (("fuse", "fused.ply"),)),
+    Output(SURFACE, (("mesh", "mesh_poisson.ply"),)),
     Output("dense/mesh_full.ply", (("mesh", "mesh_full.ply"),)),
-    Output("mapping/mesh_defects.ply", (("timeline", "mesh_defects.ply"),), needs_trust=True),
+    Output(DEFECT_SURFACE, (("timeline", "mesh_defects.ply"),), needs_trust=True),
     Output("mapping/mesh_defects.glb", (("timeline", "mesh_defects.glb"),), needs_trust=True),
     Output("mapping/defect_points.ply", (("map_defects", "defect_points.ply"),), needs_trust=True),
     Output("mapping/confidence.json", (("timeline", "confidence.json"),), needs_trust=True),
@@ -39,22 +55,22 @@ OUTPUTS: tuple[Output, ...] = (
 )
 
 TABLES: tuple[str, ...] = (
-    "frames.csv",
+    FRAMES,
     "cases.csv",
     "cases.json",
     "mapping/detections.csv",
     "mapping/detections.json",
     "mapping/timeline.csv",
     "mapping/timeline.json",
-    "mapping/defects.json",
-    "quality.json",
-    "summary.json",
+    DEFECTS,
+    QUALITY,
+    SUMMARY,
 )
 """Written for every run that ended, whatever it reached; summary.json last, so its presence says: complete."""
 
 
 OF_FURTHER_MODELS: tuple[Output, ...] = (
-    Output("sparse", (("extend", "model"),), folder=True),
+    Output(SPARSE, (("extend", "model"),), folder=True),
     *(output for output in OUTPUTS if output.path.startswith(("dense/", "mapping/"))),
 )
 """Published below ``models/N/`` for every further model that came to its end."""

@@ -15,12 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import BadInput, StageFailed
+from core.io.sparse import open_model
 from core.mapping.scene import face_normals, oriented
-from core.mapping.support import open_model
 from core.mapping.surface import Surface
-from core.mapping.views import Views, views_of
+from core.outputs import DEFECT_SURFACE, DEFECTS, FRAMES, SPARSE, SUMMARY
 from core.report.csv_form import read_csv
-from core.roi import Crop
+from core.scene.detection import Reason
+from core.scene.frame import Crop
+from core.scene.views import Views, views_of
 from core.surface.ply import Mesh, read_mesh
 from core.surface.support import point_spacing
 from core.timeline.seen import views_of_place
@@ -38,7 +40,7 @@ class Shown:
     """What a pixel shows. Without a point, `reason` says why: a code of the detections' table."""
 
     frame_index: int | None
-    reason: str | None = None
+    reason: Reason | None = None
     time_s: float | None = None
     """Of the frame, which need not be the time that was asked for; None for one that took no part."""
     point: tuple[float, float, float] | None = None
@@ -98,16 +100,16 @@ class Result:
         root = folder if model == 0 else folder / "models" / str(model)
         if model < 0 or (model and not root.is_dir()):
             raise BadInput(f"there is no model {model}; there are {_models(folder)}", where="--model")
-        for name in (folder / "frames.csv", folder / "summary.json", root / "sparse", root / "mapping"):
+        for name in (folder / FRAMES, folder / SUMMARY, root / SPARSE, (root / DEFECT_SURFACE).parent):
             if not name.exists():
                 raise BadInput(f"{folder.name} has no {name.relative_to(folder)}: is it a result?", where=name.name)
-        self._frames = _frames(folder / "frames.csv")
-        self._crop, self._n_frames, self._duration_s = _video(folder / "summary.json", self._frames)
-        self.views: Views = views_of(open_model(root / "sparse"))
+        self._frames = _frames(folder / FRAMES)
+        self._crop, self._n_frames, self._duration_s = _video(folder / SUMMARY, self._frames)
+        self.views: Views = views_of(open_model(root / SPARSE))
         try:
-            self.mesh: Mesh = oriented(read_mesh(root / "mapping" / "mesh_defects.ply"), self.views)
+            self.mesh: Mesh = oriented(read_mesh(root / DEFECT_SURFACE), self.views)
         except StageFailed as error:
-            raise BadInput(error.message, where="mesh_defects.ply") from None
+            raise BadInput(error.message, where=_file(DEFECT_SURFACE)) from None
         self._surface = Surface(self.mesh.vertices, self.mesh.faces)
         self._normals = face_normals(self.mesh)
         step = max(1, len(self.mesh.vertices) // _SPACING_SAMPLE)
@@ -138,20 +140,20 @@ class Result:
             raise BadInput(f"{x:g},{y:g} is outside the frame: 0,0 to {width},{height}", where="--pixel")
         row = next((row for row in self._frames.values() if row["source_index"] == source_index), None)
         if row is None:
-            return Shown(None, "no_registered_view")
+            return Shown(None, Reason.NO_REGISTERED_VIEW)
         index, time_s = int(row["index"]), float(row["time_s"])
         view = self.views.row(index)
         if view is None:
-            return Shown(index, "frame_not_registered", time_s)
+            return Shown(index, Reason.FRAME_NOT_REGISTERED, time_s)
         xy = np.array([[x - self._crop.x0, y - self._crop.y0]])
         if not (0 <= xy[0, 0] <= self._crop.width and 0 <= xy[0, 1] <= self._crop.height):
-            return Shown(index, "outside_roi", time_s)
+            return Shown(index, Reason.OUTSIDE_ROI, time_s)
         ray = self.views.rays(xy, self.views.R[view])
         hits = self._surface.cast(self.views.centers[view][None], ray)
         if not hits.hit[0]:
-            return Shown(index, "off_surface", time_s)
+            return Shown(index, Reason.OFF_SURFACE, time_s)
         if hits.cosine[0] <= 0:
-            return Shown(index, "occluded", time_s)
+            return Shown(index, Reason.OCCLUDED, time_s)
         point = self.views.centers[view] + hits.distance[0] * ray[0]
         face = int(hits.face[0])
         return Shown(
@@ -168,7 +170,7 @@ class Result:
     def on_surface(self, place: F64) -> OnSurface:
         """The point of the surface nearest to a (3,) place; `BadInput` when there is none or it is far away."""
         if self._surface.empty:
-            raise BadInput("the result has no surface", where="mesh_defects.ply")
+            raise BadInput("the result has no surface", where=_file(DEFECT_SURFACE))
         points, faces = self._surface.nearest(np.asarray(place, np.float64)[None])
         distance = float(np.linalg.norm(points[0] - place))
         if not distance <= FAR_SHARE * self.mesh.diagonal:
@@ -209,9 +211,9 @@ def defect_place(folder: Path, defect: int, model: int | None = None) -> tuple[F
         BadInput: there is no such defect, or it is not in `model`.
     """
     try:
-        records = json.loads((folder / "mapping" / "defects.json").read_text(encoding="utf-8"))
+        records = json.loads((folder / DEFECTS).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise BadInput(f"mapping/defects.json cannot be read: {error}", where="defects.json") from None
+        raise BadInput(f"{DEFECTS} cannot be read: {error}", where=_file(DEFECTS)) from None
     record = next((one for one in records if one["id"] == defect), None)
     if record is None:
         there = ", ".join(f"D{one['id']}" for one in records)
@@ -226,6 +228,11 @@ def defect_place(folder: Path, defect: int, model: int | None = None) -> tuple[F
 def _models(folder: Path) -> str:
     further = sorted(int(path.name) for path in (folder / "models").glob("*") if path.name.isdecimal())
     return ", ".join(str(number) for number in (0, *further))
+
+
+def _file(path: str) -> str:
+    """Last part of a published path."""
+    return path.rsplit("/", 1)[-1]
 
 
 def _three(values: F64) -> tuple[float, float, float]:
@@ -245,7 +252,7 @@ def _video(path: Path, frames: Mapping[int, Mapping[str, Any]]) -> tuple[Crop, i
     """The part of the frames that was used, frames in the video, its duration in s."""
     frame = json.loads(path.read_text(encoding="utf-8")).get("frame")
     if not frame or not frame.get("crop"):
-        raise BadInput("summary.json does not say which part of the frames was used", where="summary.json")
+        raise BadInput(f"{SUMMARY} does not say which part of the frames was used", where=SUMMARY)
     x0, y0, x1, y1 = frame["crop"]
     # Summaries did not always tell the video's length: what took part is known to be in it.
     last = max((int(row["source_index"]) for row in frames.values()), default=-1)

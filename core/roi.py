@@ -2,39 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from core.errors import BadInput
+from core.scene.frame import Crop
 from core.settings.groups import RoiSettings
 
 MIN_SIDE_PX = 64
 """A smaller crop holds too few keypoints for any of the methods here."""
-
-
-@dataclass(frozen=True)
-class Crop:
-    """The part of a source frame that is exported: x0 <= x < x1, y0 <= y < y1, in source pixels."""
-
-    x0: int
-    y0: int
-    x1: int
-    y1: int
-    source_width: int
-    source_height: int
-
-    @property
-    def width(self) -> int:
-        """Columns of the exported frame."""
-        return self.x1 - self.x0
-
-    @property
-    def height(self) -> int:
-        """Rows of the exported frame."""
-        return self.y1 - self.y0
-
-    def to_dict(self) -> dict[str, int]:
-        """The form of `crop.json`."""
-        return dict(self.__dict__)
 
 
 def crop_of(roi: RoiSettings, width: int, height: int) -> Crop:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypedDict
@@ -20,6 +21,7 @@ UNDEFINED, DEGENERATE, CALIBRATED, PLANAR = 0, 1, 2, 4
 STRONG_INLIERS = 30
 """A pair with this many inliers can register an image (COLMAP's least for an absolute pose)."""
 
+_CAMERA = "camera.json"
 _MIN_TRIALS = 30
 """Of the RANSAC. COLMAP's 100 find the same inliers on real pairs at twice the cost."""
 
@@ -50,7 +52,7 @@ class CameraFields(TypedDict):
 
 
 def camera_from_dict(values: CameraFields) -> pycolmap.Camera:
-    """`pycolmap.Camera` number 1 from the content of ``camera.json``.
+    """`pycolmap.Camera` number 1 from the facts of stage `camera`.
 
     The focal length is marked as a prior: without it COLMAP 4.2 calls every fisheye pair degenerate.
     """
@@ -64,9 +66,14 @@ def camera_from_dict(values: CameraFields) -> pycolmap.Camera:
     )
 
 
-def read_camera(path: Path) -> pycolmap.Camera:
-    """`camera_from_dict` of a file."""
-    return camera_from_dict(json.loads(path.read_text(encoding="utf-8")))
+def write_camera(folder: Path, values: Mapping[str, object]) -> None:
+    """Write the lens that matching and mapping start from, into the result of `camera`."""
+    (folder / _CAMERA).write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
+
+
+def read_camera(folder: Path) -> pycolmap.Camera:
+    """`camera_from_dict` of what `write_camera` wrote."""
+    return camera_from_dict(json.loads((folder / _CAMERA).read_text(encoding="utf-8")))
 
 
 class Verifier:

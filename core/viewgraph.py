@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -15,6 +16,12 @@ from scipy.sparse.csgraph import connected_components
 
 from core.errors import StageFailed
 from core.matched_pair import MatchedPair
+from core.scene.frame import image_name
+
+_PAIRS = "pairs.npz"
+_GRAPH = "graph.npz"
+_DATABASE = "database.db"
+_DROPPED = "dropped.json"
 
 
 @dataclass(frozen=True)
@@ -102,6 +109,41 @@ def read_table(path: Path) -> PairTable:
         raise StageFailed(f"cannot read the matches {path.name}: {error}", where="matches") from error
 
 
+def write_pairs(folder: Path, table: PairTable) -> None:
+    """Write the pairs of a chunk of frames, or those of `bridge`."""
+    write_table(folder / _PAIRS, table)
+
+
+def read_pairs(folder: Path) -> PairTable:
+    """Read what `write_pairs` wrote; `StageFailed` when the file is missing or damaged."""
+    return read_table(folder / _PAIRS)
+
+
+def write_graph(folder: Path, table: PairTable) -> None:
+    """Write all pairs, the result of stage `graph` beside its database."""
+    write_table(folder / _GRAPH, table)
+
+
+def read_graph(folder: Path) -> PairTable:
+    """Read what `write_graph` wrote; `StageFailed` when the file is missing or damaged."""
+    return read_table(folder / _GRAPH)
+
+
+def database_of(folder: Path) -> Path:
+    """COLMAP's database of all frames and verified pairs, in the result of stage `graph`."""
+    return folder / _DATABASE
+
+
+def write_dropped(folder: Path, pairs: NDArray[np.int32]) -> None:
+    """Write the (m, 2) pairs over jumps that `bridge` takes out."""
+    (folder / _DROPPED).write_text(json.dumps(pairs.tolist()))
+
+
+def read_dropped(folder: Path) -> set[tuple[int, int]]:
+    """The pairs that `write_dropped` wrote."""
+    return {(first, second) for first, second in json.loads((folder / _DROPPED).read_text())}
+
+
 def table_facts(table: PairTable) -> dict[str, int]:
     """Counts of one chunk of matches."""
     return {
@@ -154,7 +196,7 @@ def write_database(
 
 
 def _write_image(database: pycolmap.Database, camera: pycolmap.Camera, index: int, points: NDArray[np.float32]) -> None:
-    image = pycolmap.Image(name=f"{index:04d}.jpg", camera_id=camera.camera_id, image_id=index + 1)
+    image = pycolmap.Image(name=image_name(index), camera_id=camera.camera_id, image_id=index + 1)
     database.write_image(image, use_image_id=True)
     frame = pycolmap.Frame()
     frame.frame_id, frame.rig_id = index + 1, 1

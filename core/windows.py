@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
+from core.scene.case import CaseKind
 from core.settings.groups import WindowSettings
 
 
@@ -12,7 +12,7 @@ from core.settings.groups import WindowSettings
 class Window:
     """One reconstruction case over the half-open frame interval [start, end)."""
 
-    kind: Literal["coarse", "refine"]
+    kind: CaseKind
     index: int
     start: int
     end: int
@@ -22,7 +22,7 @@ class Window:
     @property
     def name(self) -> str:
         """The thesis's name, e.g. ``seg_000_0000_0180``."""
-        prefix = "seg" if self.kind == "coarse" else "refine"
+        prefix = "seg" if self.kind == CaseKind.COARSE else "refine"
         return f"{prefix}_{self.index:03d}_{self.start:04d}_{self.end:04d}"
 
 
@@ -34,7 +34,7 @@ def coarse_windows(n_frames: int, settings: WindowSettings) -> list[Window]:
     scratch and the others start from the nearest such window before them.
     """
     if settings.mode == "single" or n_frames <= settings.coarse_min:
-        return [Window("coarse", 0, 0, n_frames)]
+        return [Window(CaseKind.COARSE, 0, 0, n_frames)]
     windows: list[Window] = []
     anchor: Window | None = None
     for start in range(0, n_frames, settings.coarse_step):
@@ -44,7 +44,7 @@ def coarse_windows(n_frames: int, settings: WindowSettings) -> list[Window]:
         contained = anchor is not None and end <= anchor.end
         due = anchor is None or start - anchor.start >= settings.anchor_step
         warm = settings.start == "warm" and anchor is not None and (contained or not due)
-        window = Window("coarse", len(windows), start, end, anchor.name if warm and anchor else "")
+        window = Window(CaseKind.COARSE, len(windows), start, end, anchor.name if warm and anchor else "")
         if not warm:
             anchor = window
         windows.append(window)
@@ -65,9 +65,9 @@ def refined_windows(
     high = min(n_frames, best[1] + settings.refine_margin)
     warm = warm_from if settings.start == "warm" else ""
     if high - low < settings.refine_length:
-        return [Window("refine", 0, low, high, warm)] if high - low >= settings.refine_min else []
+        return [Window(CaseKind.REFINE, 0, low, high, warm)] if high - low >= settings.refine_min else []
     starts = range(low, high - settings.refine_length + 1, settings.refine_step)
-    return [Window("refine", i, start, start + settings.refine_length, warm) for i, start in enumerate(starts)]
+    return [Window(CaseKind.REFINE, i, start, start + settings.refine_length, warm) for i, start in enumerate(starts)]
 
 
 def sequential_pairs(n_frames: int, window: int) -> list[tuple[int, int]]:

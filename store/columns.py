@@ -11,7 +11,7 @@ from sqlalchemy import JSON, DateTime, Dialect, Double, Integer, MetaData, Strin
 from sqlalchemy.orm import DeclarativeBase, mapped_column
 from sqlalchemy.types import TypeDecorator, TypeEngine
 
-from core.report.columns import columns_of
+from core.scene.columns import columns_of
 
 
 class UtcDateTime(TypeDecorator[datetime]):
@@ -74,7 +74,7 @@ def with_columns_of(declared: type[Any], also_null: Collection[str] = ()) -> Cal
     """A decorator that gives a table the columns of a published row, as far as the class does not name them itself.
 
     Args:
-        declared: the dataclass that declares the published table; see `core.report.columns`.
+        declared: the dataclass that declares the published table; see `core.scene.columns`.
         also_null: columns that may be empty in rows of a former version, though the declaration says otherwise.
     """
 

@@ -8,10 +8,10 @@ from typing import Any
 from sqlalchemy import BigInteger, ForeignKey, Index, String, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
-from core.mapping import rows as declared_detections
-from core.report import rows as declared_cases
+from core.scene import case as declared_cases
+from core.scene import defect as declared_events
+from core.scene import detection as declared_detections
 from core.states import AttemptOutcome, InspectionState, TaskState
-from core.timeline import rows as declared_events
 
 # Whoever takes the base class from here has all tables in its metadata.
 from store.columns import Base as Base

@@ -20,11 +20,11 @@ from sqlalchemy import ColumnElement, CursorResult, Select, delete, insert, insp
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
-from core.mapping.rows import DETECTION_COLUMNS
-from core.report.rows import CASE_COLUMNS
+from core.scene.case import CASE_COLUMNS
+from core.scene.defect import TIMELINE_COLUMNS
+from core.scene.detection import DETECTION_COLUMNS
 from core.stage import Facts
 from core.task_key import piece_of, stage_of
-from core.timeline.rows import TIMELINE_COLUMNS
 from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database
 from store.leasing import changed

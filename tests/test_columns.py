@@ -14,11 +14,12 @@ from sqlalchemy import Double, Integer, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from core.flags import Verdict
-from core.mapping.rows import DetectionRow
 from core.report.build import build_report, write_tables
-from core.report.columns import Column, columns_of
-from core.report.rows import CaseRow, FrameRow
-from core.timeline.rows import EventRow
+from core.scene.case import CaseRow
+from core.scene.columns import Column, columns_of
+from core.scene.defect import EventRow
+from core.scene.detection import DetectionRow
+from core.scene.frame import FrameRow
 from scripts import reference_pages
 from store.columns import Base, with_columns_of
 from store.tables import CASES, DETECTIONS, TIMELINE, Table

@@ -16,7 +16,7 @@ from api.problems import not_found, responses
 from api.services import Services
 from api.state import state_of
 from core.gallery.palette import RGB, label_colors
-from core.mapping.rows import Outcome
+from core.scene.detection import Outcome
 from store.tables import DETECTIONS, RowFilter, labels, read_rows
 
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["results"])

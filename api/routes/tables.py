@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from http import HTTPStatus
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import BaseModel
@@ -18,7 +18,8 @@ from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
 from api.parameters import OneOf, Seconds, Share, Text
 from api.problems import Refused, not_found, responses
 from api.state import state_of
-from core.mapping.rows import Outcome
+from core.scene.case import CaseKind, CaseStatus
+from core.scene.detection import Outcome
 from store.models import ACTIVE_INSPECTION, Inspection
 from store.publishing import ArtifactRows
 from store.status import shown_state
@@ -70,8 +71,8 @@ def cases(
     caller: CallerOf,
     inspection_id: str,
     asked: AskedFor,
-    kind: Literal["coarse", "refine"] | None = None,
-    status: Literal["succeeded", "no_model", "failed"] | None = None,
+    kind: Annotated[str, OneOf(CaseKind)] | None = None,
+    status: Annotated[str, OneOf(CaseStatus)] | None = None,
 ) -> Response:
     """Rows of cases.csv, so far as cases have ended."""
     return _answer(request, caller, inspection_id, CASES, RowFilter({"kind": kind, "status": status}), asked)

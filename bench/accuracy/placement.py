@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from bench.accuracy.truth import TrueBox, Truth
 from core.geometry.boxes import box_iou
 from core.geometry.similarity import Similarity
-from core.mapping.rows import Outcome
+from core.scene.detection import Outcome
 
 F64 = NDArray[np.float64]
 

@@ -42,6 +42,8 @@ AREAS: Mapping[str, Area] = {
         ("core/mapping", "core/stages/map_defects.py"),
         ("tests/core/mapping", "tests/core/test_mapping_stages.py"),
     ),
+    "thesis": Area(("core/thesis",), ("tests/core/thesis", "tests/core/test_mapping_stages.py")),
+    "scene": Area(("core/scene", "core/io"), ("tests/core/scene", "tests/core/io")),
     "plan": Area(
         (
             "core/graph.py",

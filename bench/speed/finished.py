@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from core.errors import BadInput
-from core.features.io import FrameFeatures, read_features
+from core.features.io import FrameFeatures, feature_name, read_features
+from core.io.frames import images_folder, read_frames
+from core.scene.frame import RunFrames
 from core.settings import Settings
 from core.stage import Facts
 from core.task_key import stage_of
@@ -38,17 +38,16 @@ class FinishedRun:
 
     def images(self) -> list[Path]:
         """Exported frames in order of time."""
-        return sorted((self.folder("frames") / "images").glob("*.jpg"))
+        return sorted(images_folder(self.folder("frames")).glob("*.jpg"))
 
-    def frames(self) -> list[dict[str, Any]]:
-        """Rows of the frame table, by index."""
-        rows = json.loads((self.folder("frames") / "frames.json").read_text(encoding="utf-8"))
-        return sorted(rows, key=lambda row: int(row["index"]))
+    def frames(self) -> RunFrames:
+        """The frame table."""
+        return read_frames(self.folder("frames"))
 
     def features(self, frame: int) -> FrameFeatures:
         """Features of one frame."""
         for key, folder in self.folders.items():
-            path = folder / f"{frame:04d}.npz"
+            path = folder / feature_name(frame)
             if stage_of(key) == "features" and path.exists():
                 return read_features(path)
         raise BadInput(f"the run in '{self.out}' has no features of frame {frame}", where="RESULT")

@@ -21,9 +21,7 @@ Pair = tuple[int, int]
 def draw_pairs(run: FinishedRun, count: int, seed: int = 0) -> list[Pair]:
     """Pairs drawn without replacement from the whole pair list of the run, in order."""
     frames = run.frames()
-    times = [float(row["time_s"]) for row in frames]
-    n_search = sum(row["role"] != "added" for row in frames)
-    pairs = match_pairs(times, n_search, run.settings.matching.window)
+    pairs = match_pairs(frames.times_s, frames.n_search, run.settings.matching.window)
     return sorted(random.Random(seed).sample(pairs, min(count, len(pairs))))
 
 
@@ -33,7 +31,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int, n_pairs: int = 60) -
     pairs = draw_pairs(run, n_pairs)
     features = {frame: run.features(frame) for pair in pairs for frame in pair}
     settings = run.settings
-    verifier = Verifier(read_camera(run.folder("camera") / "camera.json"), settings.verification, settings.seed)
+    verifier = Verifier(read_camera(run.folder("camera")), settings.verification, settings.seed)
     methods: dict[str, MatchSettings] = {
         name: settings.matching.model_copy(update={"method": name}) for name in ("auto", "lightglue")
     }

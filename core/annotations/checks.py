@@ -7,9 +7,9 @@ import math
 import re
 from fractions import Fraction
 
-from core.annotations.model import Polygon
 from core.errors import BadInput
 from core.geometry.boxes import Box
+from core.scene.detection import Polygon
 
 _SECONDS = re.compile(r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(e[+-]?[0-9]{1,2})?", re.IGNORECASE)
 _CLOCK = re.compile(r"([0-9]{1,4}):([0-5][0-9]):([0-5][0-9](\.[0-9]*)?)")

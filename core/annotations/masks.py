@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.annotations.model import Mask, Polygon
-from core.roi import Crop
+from core.scene.detection import Mask, Polygon
+from core.scene.frame import Crop
 
 BLADE_LABEL = "blade"
 _SHIFT = 4
@@ -20,7 +20,7 @@ def blade_mask(masks: Sequence[Mask], crop: Crop) -> NDArray[np.bool_] | None:
     """(crop.height, crop.width) mask of the pixels on a blade; None when no blade is annotated.
 
     Args:
-        masks: those of one source frame, as `load_masks` gives them.
+        masks: those of one source frame, as `core.io.annotations.read_masks` gives them.
         crop: the exported part of the frame.
     """
     polygons = [mask.polygon for mask in masks if mask.label.casefold() == BLADE_LABEL]

@@ -1,39 +1,11 @@
-"""What an annotation file says, typed. Coordinates are shares of the source frame's width and height."""
+"""What an annotation file says, typed: its time keys, each with detections and masks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
 
-from core.geometry.boxes import Box
-
-Polygon = tuple[tuple[float, float], ...]
-"""At least three corners (x, y)."""
-
-
-@dataclass(frozen=True)
-class Mask:
-    """A labelled region; `blade` masks mark what the surface may support."""
-
-    label: str
-    polygon: Polygon
-
-
-@dataclass(frozen=True)
-class Detection:
-    """One detection of the input, in input order."""
-
-    id: int
-    key: str
-    """Time key, verbatim."""
-    time: Fraction
-    """Seconds from the first frame."""
-    label: str
-    score: float | None
-    box: Box
-    polygon: Polygon | None
-    """Its own, or that of the mask that fits it."""
-    track_id: str | int | None
+from core.scene.detection import Detection, Mask
 
 
 @dataclass(frozen=True)
@@ -41,7 +13,9 @@ class Entry:
     """Everything at one time key."""
 
     key: str
+    """Time key, verbatim."""
     time: Fraction
+    """The exact number that it spells, seconds from the first frame unless the file follows another convention."""
     detections: tuple[Detection, ...]
     masks: tuple[Mask, ...]
 

@@ -7,9 +7,10 @@ from fractions import Fraction
 from pathlib import Path
 
 from core.annotations import checks
-from core.annotations.model import Annotations, Detection, Entry, Mask, Polygon
+from core.annotations.model import Annotations, Entry
 from core.annotations.read import read_json
 from core.geometry.boxes import Box, box_iou
+from core.scene.detection import Detection, Mask, Polygon
 
 MIN_MASK_IOU = 0.5
 """A mask with the same label and at least this overlap of boxes belongs to a detection."""
@@ -78,7 +79,7 @@ def _detection(
     return Detection(
         id=number,
         key=key,
-        time=time,
+        time_s=float(time),
         label=label,
         score=checks.as_score(members.get("score"), f"{path}.score"),
         box=box,

@@ -1,20 +1,17 @@
-"""Annotations put on frames: which source frame each time key means, and the files that say so."""
+"""Annotations put on frames: which source frame each time key means."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
-from typing import Any
 
 from core.annotations.checks import shown
 from core.annotations.clocks import Clock, ruler_of
 from core.annotations.convention import Fitted, fit_convention
-from core.annotations.model import Annotations, Mask, Polygon
+from core.annotations.model import Annotations
 from core.errors import BadInput
 from core.flags import Flag, Severity
-from core.geometry.boxes import Box
+from core.scene.detection import Detection, Mask
 from core.video.table import FrameTable
 
 MAX_OUTSIDE_SHARE = 0.5
@@ -22,26 +19,10 @@ MAX_OUTSIDE_SHARE = 0.5
 
 
 @dataclass(frozen=True)
-class PlacedDetection:
-    """One row of `detections.json`; coordinates are shares of the source frame."""
-
-    id: int
-    key: str
-    time_s: float
-    label: str
-    score: float | None
-    box: Box
-    polygon: Polygon | None
-    track_id: str | int | None
-    source_index: int | None
-    """Source frame of the key; None when the key lies outside the video."""
-
-
-@dataclass(frozen=True)
 class PlacedAnnotations:
     """All detections by id; masks by source frame; and what the reader should know."""
 
-    detections: tuple[PlacedDetection, ...]
+    detections: tuple[Detection, ...]
     masks: dict[int, tuple[Mask, ...]]
     keys_outside: tuple[str, ...]
     looked_at: tuple[int, ...]
@@ -82,18 +63,13 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
         flags = (*flags, Flag("annotations_outside_video", Severity.WARNING, float(len(outside)), 0.0, where))
     return PlacedAnnotations(
         detections=tuple(
-            PlacedDetection(
-                id=d.id,
-                key=d.key,
-                time_s=_seconds(d.time, frames[d.key], fitted.reading.clock, table),
-                label=d.label,
-                score=d.score,
-                box=d.box,
-                polygon=d.polygon,
-                track_id=d.track_id,
-                source_index=frames[d.key],
+            replace(
+                detection,
+                time_s=_seconds(entry.time, frames[entry.key], fitted.reading.clock, table),
+                source_index=frames[entry.key],
             )
-            for d in annotations.detections
+            for entry in annotations.entries
+            for detection in entry.detections
         ),
         masks=masks,
         keys_outside=outside,
@@ -114,35 +90,3 @@ def _seconds(value: Fraction, frame: int | None, clock: Clock, table: FrameTable
         return table.rows[frame].time_s
     ruler = ruler_of(clock, table)
     return float((value * ruler.unit - ruler.times[0]) / ruler.step / table.info.average_rate)
-
-
-def write_placed(placed: PlacedAnnotations, folder: Path) -> None:
-    """Write `detections.json`, `masks.json` and `looked_at.json`."""
-    rows = [dict(detection.__dict__) for detection in placed.detections]
-    masks = {str(i): [dict(mask.__dict__) for mask in placed.masks[i]] for i in sorted(placed.masks)}
-    _write_json(folder / "detections.json", rows)
-    _write_json(folder / "masks.json", masks)
-    _write_json(folder / "looked_at.json", list(placed.looked_at))
-
-
-def load_detections(folder: Path) -> list[PlacedDetection]:
-    """Read `detections.json` of the annotations task, by id."""
-    rows = json.loads((folder / "detections.json").read_text(encoding="utf-8"))
-    return [PlacedDetection(**{**row, "box": tuple(row["box"]), "polygon": _polygon(row["polygon"])}) for row in rows]
-
-
-def load_masks(folder: Path) -> dict[int, tuple[Mask, ...]]:
-    """Read `masks.json` of the annotations task: masks by source frame."""
-    rows = json.loads((folder / "masks.json").read_text(encoding="utf-8"))
-    return {
-        int(index): tuple(Mask(mask["label"], tuple(map(tuple, mask["polygon"]))) for mask in masks)
-        for index, masks in rows.items()
-    }
-
-
-def _polygon(value: list[list[float]] | None) -> Polygon | None:
-    return None if value is None else tuple((x, y) for x, y in value)
-
-
-def _write_json(path: Path, value: Any) -> None:
-    path.write_text(json.dumps(value, separators=(",", ":"), allow_nan=False) + "\n", encoding="utf-8")

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.flags import Flag, Severity
+from core.scene.case import CaseReason, CaseStatus
 
 MAX_STILL_SHARE = 0.5
 """More cases than this that end without parallax speak for the whole clip."""
@@ -34,8 +35,8 @@ def cases_parallax(rows: Sequence[Mapping[str, object]]) -> Flag | None:
     Returns:
         `no_parallax` with the share of such cases, when none has a model and most end for that reason.
     """
-    still = sum(row["reason"] == "no_parallax" for row in rows)
-    if not rows or any(row["status"] == "succeeded" for row in rows) or still <= MAX_STILL_SHARE * len(rows):
+    still = sum(row["reason"] == CaseReason.NO_PARALLAX for row in rows)
+    if not rows or any(row["status"] == CaseStatus.SUCCEEDED for row in rows) or still <= MAX_STILL_SHARE * len(rows):
         return None
     return Flag("no_parallax", Severity.ERROR, still / len(rows), MAX_STILL_SHARE, f"{still} of {len(rows)} cases")
 

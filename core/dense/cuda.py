@@ -19,7 +19,7 @@ import pycolmap
 
 from core.dense.maps import DenseScene, DepthMap, read_map
 from core.dense.views import DenseView
-from core.dense.workspace import read_maps, write_maps, write_patch_match_config, write_workspace
+from core.dense.workspace import depth_path, read_maps, write_maps, write_patch_match_config, write_workspace
 from core.errors import BadInput
 from core.settings.groups import DenseSettings
 
@@ -76,5 +76,5 @@ def geometric(
 
 def collect(workspace: Path, views: Sequence[DenseView], kind: str) -> dict[str, DepthMap]:
     """The maps that COLMAP wrote, by image name."""
-    done = [view for view in views if (workspace / "stereo" / "depth_maps" / f"{view.name}.{kind}.bin").exists()]
+    done = [view for view in views if depth_path(workspace, view.name, kind).exists()]
     return {view.name: read_maps(workspace, view.name, kind) for view in done}

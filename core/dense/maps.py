@@ -21,6 +21,10 @@ F64 = NDArray[np.float64]
 U8 = NDArray[np.uint8]
 
 
+_SUFFIX = ".npz"
+_MASK = "mask.png"
+
+
 @dataclass(frozen=True)
 class DepthMap:
     """Depth along the optical axis (0 = none), unit normals in the camera frame, and matching cost."""
@@ -36,6 +40,11 @@ class DepthMap:
     def valid_share(self) -> float:
         """Share of pixels with a depth."""
         return float((self.depth > 0).mean())
+
+
+def map_path(folder: Path, name: str) -> Path:
+    """File of the depth map of an image, in the result of a chunk."""
+    return folder / f"{name}{_SUFFIX}"
 
 
 def write_map(path: Path, found: DepthMap) -> None:
@@ -56,7 +65,7 @@ def read_map(path: Path) -> DepthMap:
 
 def map_paths(folders: Iterable[Path]) -> dict[str, Path]:
     """Paths of all depth maps in the result folders of chunks, by image name."""
-    return {path.name.removesuffix(".npz"): path for folder in folders for path in sorted(folder.glob("*.npz"))}
+    return {path.name.removesuffix(_SUFFIX): path for folder in folders for path in sorted(folder.glob(f"*{_SUFFIX}"))}
 
 
 @dataclass(frozen=True)
@@ -80,10 +89,15 @@ class DenseScene:
 
     def mask(self) -> NDArray[np.bool_]:
         """(h, w) where the lens's picture covers the pinhole's."""
-        image = cv2.imread(str(self.folder / "mask.png"), cv2.IMREAD_GRAYSCALE)
+        image = cv2.imread(str(self.folder / _MASK), cv2.IMREAD_GRAYSCALE)
         if image is None:
-            raise StageFailed("the mask of the undistorted images cannot be read", where="mask.png")
+            raise StageFailed("the mask of the undistorted images cannot be read", where=_MASK)
         return np.asarray(image > 127)
+
+
+def write_mask(folder: Path, inside: NDArray[np.bool_]) -> None:
+    """Write which pixels of the pinhole's (h, w) picture the lens's covers, into the result of `undistort`."""
+    cv2.imwrite(str(folder / _MASK), inside.astype(np.uint8) * 255)
 
 
 def open_scene(folder: Path) -> DenseScene:
@@ -98,4 +112,4 @@ def open_scene(folder: Path) -> DenseScene:
         poses[image.name] = pose_of(image)
         ids = sorted({o.point3D_id for o in image.get_observation_points2D()})
         points[image.name] = np.array([model.points3D[i].xyz for i in ids], dtype=np.float64).reshape(-1, 3)
-    return DenseScene(folder, pinhole, poses, points, tuple(read_views(folder / "views.json")))
+    return DenseScene(folder, pinhole, poses, points, tuple(read_views(folder)))

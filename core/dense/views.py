@@ -186,11 +186,15 @@ def plan_views(views: SparseViews, settings: DenseSettings) -> list[DenseView]:
     return plan
 
 
-def write_views(path: Path, plan: Sequence[DenseView]) -> None:
-    """Write ``views.json``."""
-    path.write_text(json.dumps([asdict(view) for view in plan], indent=1))
+_VIEWS = "views.json"
 
 
-def read_views(path: Path) -> list[DenseView]:
-    """Read ``views.json``."""
-    return [DenseView(**{**row, "sources": tuple(row["sources"])}) for row in json.loads(path.read_text())]
+def write_views(folder: Path, plan: Sequence[DenseView]) -> None:
+    """Write the plan of depth maps into the result of `undistort`."""
+    (folder / _VIEWS).write_text(json.dumps([asdict(view) for view in plan], indent=1))
+
+
+def read_views(folder: Path) -> list[DenseView]:
+    """Read what `write_views` wrote."""
+    rows = json.loads((folder / _VIEWS).read_text())
+    return [DenseView(**{**row, "sources": tuple(row["sources"])}) for row in rows]

@@ -50,23 +50,31 @@ def _link(source: Path, target: Path) -> None:
         shutil.copyfile(source, target)
 
 
+def depth_path(workspace: Path, name: str, kind: str) -> Path:
+    """File of an image's depth map, by COLMAP's name."""
+    return workspace / "stereo" / "depth_maps" / f"{name}.{kind}.bin"
+
+
+def normal_path(workspace: Path, name: str, kind: str) -> Path:
+    """File of its normals."""
+    return depth_path(workspace, name, kind).parents[1] / "normal_maps" / depth_path(workspace, name, kind).name
+
+
 def write_maps(workspace: Path, name: str, found: DepthMap, kind: str = "geometric") -> None:
     """Write one view's depth and normal map in COLMAP's format. Depth <= 0 means none."""
     depth = np.ascontiguousarray(found.depth, dtype=np.float32)
     valid = depth[depth > 0]
     low, high = (float(valid.min()), float(valid.max())) if len(valid) else (0.0, 1.0)
-    stereo = workspace / "stereo"
-    pycolmap.DepthMap.from_array(depth, low, high).write(str(stereo / "depth_maps" / f"{name}.{kind}.bin"))
+    pycolmap.DepthMap.from_array(depth, low, high).write(str(depth_path(workspace, name, kind)))
     normals = np.ascontiguousarray(found.normal, dtype=np.float32)
-    pycolmap.NormalMap.from_array(normals).write(str(stereo / "normal_maps" / f"{name}.{kind}.bin"))
+    pycolmap.NormalMap.from_array(normals).write(str(normal_path(workspace, name, kind)))
 
 
 def read_maps(workspace: Path, name: str, kind: str = "geometric") -> DepthMap:
     """Read one view's maps; COLMAP keeps no cost, so it is 0 where there is a depth and 2 elsewhere."""
-    stereo = workspace / "stereo"
     depth_map, normal_map = pycolmap.DepthMap(), pycolmap.NormalMap()
-    depth_map.read(str(stereo / "depth_maps" / f"{name}.{kind}.bin"))
-    normal_map.read(str(stereo / "normal_maps" / f"{name}.{kind}.bin"))
+    depth_map.read(str(depth_path(workspace, name, kind)))
+    normal_map.read(str(normal_path(workspace, name, kind)))
     depth = np.maximum(np.asarray(depth_map.to_array(), dtype=np.float32), 0.0)
     normal = np.asarray(normal_map.to_array(), dtype=np.float32)
     cost = np.where(depth > 0, 0.0, 2.0).astype(np.float32)

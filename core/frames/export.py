@@ -12,15 +12,10 @@ from numpy.typing import NDArray
 
 from core.errors import StageFailed
 from core.frames.sampling import ChosenFrame
-from core.roi import Crop
+from core.scene.frame import Crop, image_name
 from core.video.decode import VideoReader
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.table import FrameTable
-
-
-def image_name(index: int) -> str:
-    """File name of an exported frame."""
-    return f"{index:04d}.jpg"
 
 
 def export_frames(

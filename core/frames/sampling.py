@@ -6,17 +6,15 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
 
 from core.errors import BadInput
 from core.flags import Flag, Severity
+from core.scene.frame import Role
 from core.settings.groups import FrameSettings
 from core.video.table import FrameTable
 
 MIN_CLIPPED_S = 10
 """A preset's interval that keeps less than this of the video says nothing about it; the whole is used."""
-
-Role = Literal["sampled", "annotated", "both", "neighbour", "added"]
 
 
 @dataclass(frozen=True)
@@ -138,12 +136,12 @@ def choose_frames(
     in_sample = set(sampled)
     chosen: list[ChosenFrame] = []
     for source in search:
-        role: Role = "both" if source in wanted else "sampled"
+        role = Role.BOTH if source in wanted else Role.SAMPLED
         if source not in in_sample:
-            role = "neighbour" if source in neighbours else "annotated"
+            role = Role.NEIGHBOUR if source in neighbours else Role.ANNOTATED
         chosen.append(ChosenFrame(len(chosen), source, role))
     for source in sorted(set(extra).difference(taken)):
-        chosen.append(ChosenFrame(len(chosen), source, "added"))
+        chosen.append(ChosenFrame(len(chosen), source, Role.ADDED))
     return chosen
 
 

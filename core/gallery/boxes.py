@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.gallery.palette import RGB
-from core.mapping.rows import DetectionRow, Outcome
+from core.scene.detection import DetectionRow, Outcome
 
 U8 = NDArray[np.uint8]
 Plate = tuple[int, int, int, int]

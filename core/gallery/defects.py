@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-Row = Mapping[str, Any]
-"""A row of a table or an entry of defects.json (docs/outputs.md), as it was read from JSON."""
+from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow, Extent, Sighting
+from core.scene.frame import RunFrames
 
-_UNITS = {"model": "model units"}
+_UNITS = {MODEL_UNIT: "model units"}
 """Units of an extent as people read them, where that differs."""
 
 
@@ -55,42 +54,39 @@ class DefectLine:
         return f"{self.size:.3g} ± {sigma} {_UNITS.get(self.unit, self.unit)}"
 
 
-def defect_lines(records: Sequence[Row], events: Sequence[Row], frames: Mapping[int, Row]) -> list[DefectLine]:
+def defect_lines(records: Sequence[DefectRecord], events: Sequence[EventRow], frames: RunFrames) -> list[DefectLine]:
     """Rows of the table, by size: the largest first, unknown sizes last, equal ones by number.
 
     Args:
-        records: of defects.json.
-        events: of the timeline.
-        frames: of frames.csv, by index.
+        records: of all models.
+        events: of all models.
+        frames: of the run.
     """
-    lines = [_line(record, [e for e in events if e["defect_id"] == record["id"]], frames) for record in records]
+    lines = [_line(record, [e for e in events if e.defect_id == record.id], frames) for record in records]
     return sorted(lines, key=lambda line: (line.size is None, -(line.size or 0.0), line.number))
 
 
-def _line(record: Row, visits: Sequence[Row], frames: Mapping[int, Row]) -> DefectLine:
-    extent, seen = record.get("extent") or {}, record["persistence"]
-    x, y, z = (float(value) for value in record["centroid"])
+def _line(record: DefectRecord, visits: Sequence[EventRow], frames: RunFrames) -> DefectLine:
+    extent = record.extent or Extent(None, MODEL_UNIT, None)
     return DefectLine(
-        number=int(record["id"]),
-        label=str(record["label"]),
-        size=extent.get("value"),
-        size_sigma=extent.get("sigma"),
-        unit=str(extent.get("unit") or "model"),
-        start_s=min((event["start_s"] for event in visits), default=None),
-        end_s=max((event["end_s"] for event in visits), default=None),
+        number=record.id,
+        label=record.label,
+        size=extent.value,
+        size_sigma=extent.sigma,
+        unit=extent.unit,
+        start_s=min((event.start_s for event in visits), default=None),
+        end_s=max((event.end_s for event in visits), default=None),
         visits=len(visits),
-        n_detections=len(record["detections"]),
-        n_frames=int(seen["k"]),
-        n_could_show=int(seen["n"]),
-        place=(x, y, z),
-        best=_best(record["frames"], frames),
+        n_detections=len(record.detections),
+        n_frames=record.persistence.k,
+        n_could_show=record.persistence.n,
+        place=record.centroid,
+        best=_best(record.frames, frames),
     )
 
 
-def _best(views: Sequence[Row], frames: Mapping[int, Row]) -> BestFrame | None:
+def _best(views: Sequence[Sighting], frames: RunFrames) -> BestFrame | None:
     if not views:
         return None
-    first = views[0]
-    frame = frames[int(first["frame_index"])]
-    place = (float(first["x"]), float(first["y"])) if "x" in first else None
-    return BestFrame(int(frame["source_index"]), float(frame["time_s"]), place)
+    frame = frames[views[0].frame_index]
+    return BestFrame(frame.source_index, frame.time_s, views[0].at)

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.gallery.defects import Row
-from core.mapping.rows import DetectionRow
 from core.outputs import evidence_name
+from core.scene.defect import DefectRecord
+from core.scene.detection import DetectionRow
 
 U8 = NDArray[np.uint8]
 
@@ -43,26 +43,23 @@ class Evidence:
         return evidence_name(self.defect)
 
 
-def evidence_of(records: Sequence[Row], rows: Sequence[DetectionRow]) -> list[Evidence]:
+def evidence_of(records: Sequence[DefectRecord], rows: Sequence[DetectionRow]) -> list[Evidence]:
     """Of every defect with a view in which it was detected, in their order."""
     found = []
     for record in records:
-        best = next((view for view in record["frames"] if view["detected"]), None)
+        best = next((view for view in record.frames if view.detected), None)
         if best is None:
             continue
-        frame, number = int(best["frame_index"]), int(record["id"])
-        own = [row for row in rows if row.defect_id == number and row.frame_index == frame]
-        place = (float(best["x"]), float(best["y"])) if "x" in best else None
-        boxes = tuple((row.box_x1, row.box_y1, row.box_x2, row.box_y2) for row in own)
-        found.append(Evidence(number, frame, _caption(record), boxes, place))
+        own = [row for row in rows if row.defect_id == record.id and row.frame_index == best.frame_index]
+        boxes = tuple(row.box for row in own)
+        found.append(Evidence(record.id, best.frame_index, _caption(record), boxes, best.at))
     return [one for one in found if one.boxes]
 
 
-def _caption(record: Row) -> str:
-    seen = record["persistence"]
-    confidence = record.get("confidence") or {}
-    sure = f", confidence {confidence['value']:.2f}" if confidence else ""
-    text = f"D{record['id']} {record['label']}{sure}, in {seen['k']} of {seen['n']} frames that could show it"
+def _caption(record: DefectRecord) -> str:
+    seen = record.persistence
+    sure = "" if record.confidence is None else f", confidence {record.confidence.value:.2f}"
+    text = f"D{record.id} {record.label}{sure}, in {seen.k} of {seen.n} frames that could show it"
     # OpenCV's font knows printable ASCII only.
     return "".join(c if 32 <= ord(c) < 127 else "?" for c in text)
 

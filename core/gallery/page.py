@@ -18,7 +18,7 @@ from core.gallery.boxes import FrameBoxes, frame_file
 from core.gallery.defects import DefectLine
 from core.gallery.evidence import Evidence
 from core.gallery.palette import RGB
-from core.mapping.rows import REASONS, DetectionRow, Outcome
+from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
 
 _PACKAGE = "core.gallery"
 _PAGES = Environment(
@@ -57,7 +57,7 @@ def gallery_page(
         evidence=evidence,
         frames=frames,
         n_frames=n_frames,
-        n_outside=sum(row.reason == "no_frame" for row in rows),
+        n_outside=sum(row.reason == Reason.NO_FRAME for row in rows),
         filters=_filters(rows),
         colors=colors,
         reasons=REASONS,

@@ -19,6 +19,7 @@ from core.mapping.scene import Scene, places_nearest
 from core.mapping.sigma import place_sigma
 from core.mapping.support_check import depth_agreement
 from core.mapping.surface import Hits
+from core.scene.detection import Reason
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -70,8 +71,8 @@ class Cast:
 class Missed:
     """Why a sight has no place on the surface."""
 
-    reason: str
-    """``off_surface``, also where something nearer than any surface is seen; ``occluded`` when only the back of the
+    reason: Reason
+    """`OFF_SURFACE`, also where something nearer than any surface is seen; `OCCLUDED` when only the back of the
     surface lies there."""
 
 
@@ -90,12 +91,12 @@ class _Sparse:
 def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
     """Place every sight, in order."""
     candidates: list[Candidate] = []
-    outcome: list[Cast | Missed] = [Missed("off_surface") for _ in sights]
+    outcome: list[Cast | Missed] = [Missed(Reason.OFF_SURFACE) for _ in sights]
     boxed = [_sparse_in_box(scene, sight) for sight in sights]
     for row, sight in enumerate(sights):
         found, blocked = _candidates(scene, row, sight, boxed[row])
         if not found and blocked:
-            outcome[row] = Missed("occluded")
+            outcome[row] = Missed(Reason.OCCLUDED)
         candidates += found
     places = places_nearest(scene.surface, [candidate.place for candidate in candidates])
     candidates = [replace(candidate, place=place) for candidate, place in zip(candidates, places, strict=True)]

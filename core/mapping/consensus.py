@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from core.geometry.boxes import Box, in_box
 from core.mapping.surface import Surface
-from core.mapping.views import Views
+from core.scene.views import Views
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -15,7 +15,8 @@ from scipy.spatial.transform import Rotation, Slerp
 from core.geometry.boxes import in_box
 from core.mapping.casting import Sight
 from core.mapping.scene import Scene
-from core.mapping.views import Views
+from core.scene.detection import PlacementMethod
+from core.scene.views import Views
 
 F64 = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ class Estimate:
     """A place that was not found by casting onto the surface."""
 
     place: F64
-    rung: str
+    rung: PlacementMethod
     sigma: float
 
 
@@ -46,7 +47,7 @@ def from_depth_map(scene: Scene, sight: Sight) -> Estimate | None:
     if len(valid) < MIN_POINTS:
         return None
     points = sight.origin + distance[valid, None] * rays[valid]
-    return _nearest_surface(points, distance[valid], scene, sight, "depth")
+    return _nearest_surface(points, distance[valid], scene, sight, PlacementMethod.DEPTH)
 
 
 def from_sparse_points(scene: Scene, sight: Sight) -> Estimate | None:
@@ -58,10 +59,10 @@ def from_sparse_points(scene: Scene, sight: Sight) -> Estimate | None:
     if inside.sum() < MIN_POINTS:
         return None
     distance = np.linalg.norm(points[inside] - sight.origin, axis=1)
-    return _nearest_surface(points[inside], distance, scene, sight, "sparse")
+    return _nearest_surface(points[inside], distance, scene, sight, PlacementMethod.SPARSE)
 
 
-def _nearest_surface(points: F64, distance: F64, scene: Scene, sight: Sight, rung: str) -> Estimate:
+def _nearest_surface(points: F64, distance: F64, scene: Scene, sight: Sight, rung: PlacementMethod) -> Estimate:
     """Mean of the points about as far away as the nearest quarter of them."""
     x1, y1, x2, y2 = sight.box_px
     # One of the distances, so that at least its point is kept: between two far apart there is none.

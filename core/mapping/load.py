@@ -16,17 +16,18 @@ from core.dense.cameras import Pinhole
 from core.dense.maps import map_paths, open_scene, read_map
 from core.geometry.boxes import Box
 from core.geometry.pose import Pose
+from core.io.sparse import open_model
 from core.mapping.consensus import looked_at
 from core.mapping.depth_witness import DepthMaps
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal, oriented
-from core.mapping.support import open_model, read_sparse_model
+from core.mapping.support import read_sparse_model
 from core.mapping.surface import Surface
 from core.mapping.surface_rules import Matches
-from core.mapping.views import Views, views_of
-from core.roi import Crop
+from core.scene.frame import Crop, index_of_image
+from core.scene.views import Views, views_of
 from core.surface.ply import read_mesh
 from core.surface.support import point_spacing
-from core.viewgraph import read_table
+from core.viewgraph import database_of, read_graph
 
 F64 = NDArray[np.float64]
 
@@ -83,7 +84,7 @@ def open_depth_maps(undistorted: Path, folders: Iterable[Path]) -> DepthMaps:
     """Depth maps of the dense views, asked by frame index and world positions."""
     scene = open_scene(undistorted)
     paths = map_paths(folders)
-    names = {int(Path(name).stem): name for name in paths}
+    names = {index_of_image(name): name for name in paths}
 
     @lru_cache(maxsize=_OPEN_MAPS)
     def depth_of(frame_index: int) -> NDArray[np.float32]:
@@ -120,9 +121,9 @@ def distances_in_map(depth: NDArray[np.float32], pinhole: Pinhole, pose: Pose, p
 
 def matches_of_graph(graph: Path, views: Views) -> Matches:
     """Verified matches of a frame with registered ones, from the result of stage `graph`."""
-    table = read_table(graph / "graph.npz")
+    table = read_graph(graph)
     registered = set(views.frame_index.tolist())
-    keypoints = _keypoints(graph / "database.db")
+    keypoints = _keypoints(database_of(graph))
 
     def matches(index: int) -> list[tuple[int, F64, F64]]:
         found = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,12 @@ from core.mapping.depth_witness import DepthMaps
 from core.mapping.sigma import PoseCovariance, pose_covariance
 from core.mapping.support import Observations
 from core.mapping.surface import Surface
-from core.mapping.views import Views
-from core.roi import Crop
+from core.scene.frame import Crop
+from core.scene.views import Views
 from core.surface.ply import Mesh
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -113,7 +116,7 @@ def cloud_tree(points: F64) -> Any:
     return cKDTree(points, balanced_tree=False, compact_nodes=False)
 
 
-def mean_focal(camera: Any) -> float:
+def mean_focal(camera: pycolmap.Camera) -> float:
     """Mean of the focal lengths of a camera, px."""
     return float(camera.mean_focal_length())
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import cv2  # noqa: F401  # must be loaded before pycolmap: the other order aborts in PNG writing
 import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
-from core.errors import StageFailed
 from core.geometry.boxes import Box, in_box
-from core.mapping.rows import Detection
-from core.roi import Crop
+from core.io.sparse import open_model
+from core.scene.detection import Detection
+from core.scene.frame import Crop
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -108,16 +108,8 @@ def read_sparse_model(folder: Path, frame_indices: Iterable[int] | None = None) 
     return SparseModel(observations, positions)
 
 
-def open_model(folder: Path) -> Any:
-    """The COLMAP model of a folder as a pycolmap.Reconstruction; `StageFailed` when there is none."""
-    try:
-        return pycolmap.Reconstruction(str(folder))
-    except (ValueError, RuntimeError, OSError) as error:
-        raise StageFailed(f"no sparse model in {folder.name}: {error}", where=folder.name) from None
-
-
-def observations_of(image: Any) -> Observations:
-    """Keypoints with a 3D point of a registered image (`pycolmap.Image`)."""
+def observations_of(image: pycolmap.Image) -> Observations:
+    """Keypoints with a 3D point of a registered image."""
     points = image.get_observation_points2D()
     xy = np.array([point.xy for point in points], dtype=np.float64).reshape(-1, 2)
     ids = np.array([point.point3D_id for point in points], dtype=np.int64)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 from core.geometry.boxes import in_box
 from core.geometry.pose import transform
 from core.mapping.casting import Cast, Missed, Sight, cast_sights
-from core.mapping.confidence import Parts
 from core.mapping.ladder import (
     MAX_ERROR_PX,
     Estimate,
@@ -20,10 +20,22 @@ from core.mapping.ladder import (
     from_depth_map,
     from_sparse_points,
 )
+from core.mapping.observations import Observation, write_observations
 from core.mapping.pixels import Footprint, footprint
-from core.mapping.rows import Detection, DetectionRow, Outcome, approximate_row, mapped_row, unplaced_row
 from core.mapping.scene import Scene
 from core.mapping.support import box_in_crop_px
+from core.scene.detection import (
+    Detection,
+    DetectionRow,
+    Outcome,
+    PlacementMethod,
+    Reason,
+    approximate_row,
+    mapped_row,
+    unplaced_row,
+)
+from core.scene.frame import RunFrames
+from core.scene.methods import Placed, Report, Support
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -33,70 +45,62 @@ Matches = Callable[[int], Sequence[tuple[int, F64, F64]]]
 
 
 @dataclass(frozen=True)
-class Times:
-    """When frames of the run were seen."""
+class SurfacePlacing:
+    """Placing by casting onto the supported surface, checked by other views."""
 
-    index_of_source: Mapping[int, int]
-    """Row of frames.csv of each source frame that took part."""
-    time_of_index: Mapping[int, float]
-    """Presentation time of each of them, s."""
+    scene: Scene
+    frames: RunFrames
+    matches: Matches
+    """Verified matches of a frame that has no pose."""
+    reach_s: float
+    """How far in time a pose may be interpolated."""
+    report: Report
 
-
-@dataclass(frozen=True)
-class Observation:
-    """A detection after placement: its row, and what later steps need of its surface."""
-
-    row: DetectionRow
-    points: F64
-    """(n, 3) visible surface under it; empty unless it was cast."""
-    normal: F64
-    """(3,) unit, towards the camera; zero when unknown."""
-    radius: float
-    """Of the patch, scene units."""
-    sigma: float | None
-    """Standard deviation of the place, scene units."""
-    parts: Parts | None
-    point_ids: I64
-    """Sparse points that support it."""
-    sparse: F64
-    """(n, 3) of them."""
-    track_id: str | None = None
+    def place(self, detections: Sequence[Detection], folder: Path) -> Placed:
+        """Place all detections; writes them as observations."""
+        self.report(1, 4, "placing detections")
+        observations = place_on_surface(detections, self.scene, self.frames, self.matches, self.reach_s)
+        self.report(3, 4, "writing")
+        write_observations(folder, observations)
+        supported = [one for one in observations if len(one.point_ids)]
+        support = Support.of((one.row.id, one.point_ids, one.sparse) for one in supported)
+        return Placed(tuple(one.row for one in observations), support)
 
 
 def place_on_surface(
-    detections: Sequence[Detection], scene: Scene, times: Times, matches: Matches, reach_s: float
+    detections: Sequence[Detection], scene: Scene, frames: RunFrames, matches: Matches, reach_s: float
 ) -> list[Observation]:
     """Place every detection; one observation each, in input order.
 
     Args:
         detections: of the annotation file.
         scene: model and surface.
-        times: frames of the run.
+        frames: of the run.
         matches: verified matches of a frame that has no pose.
         reach_s: how far in time a pose may be interpolated.
     """
     sights: dict[int, Sight] = {}
     observations: dict[int, Observation] = {}
-    estimated: dict[int, tuple[Sight, str, str]] = {}
+    estimated: dict[int, tuple[Sight, PlacementMethod, Reason]] = {}
     for number, detection in enumerate(detections):
         samples = _samples(detection, scene)
-        index = None if detection.source_index is None else times.index_of_source.get(detection.source_index)
+        index = None if detection.source_index is None else frames.index_of_source.get(detection.source_index)
         view = None if index is None else scene.views.row(index)
         if detection.source_index is None:
-            observations[number] = _without(unplaced_row(detection, "no_frame"), detection)
+            observations[number] = _without(unplaced_row(detection, Reason.NO_FRAME), detection)
         elif not len(samples.xy):
-            observations[number] = _without(unplaced_row(detection, "outside_roi", index), detection)
+            observations[number] = _without(unplaced_row(detection, Reason.OUTSIDE_ROI, index), detection)
         elif view is not None:
             sights[number] = _sight(number, detection, samples, scene, view)
         else:
-            reason = "no_registered_view" if index is None else "frame_not_registered"
-            found = _without_pose(number, detection, samples, index, scene, times, matches, reach_s)
+            reason = Reason.NO_REGISTERED_VIEW if index is None else Reason.FRAME_NOT_REGISTERED
+            found = _without_pose(number, detection, samples, index, scene, frames, matches, reach_s)
             if found is None:
                 observations[number] = _without(unplaced_row(detection, reason, index), detection)
             else:
                 estimated[number] = (*found, reason)
     observations |= _registered(detections, scene, sights)
-    observations |= _estimates(detections, scene, estimated, times)
+    observations |= _estimates(detections, scene, estimated, frames)
     return [observations[number] for number in range(len(detections))]
 
 
@@ -133,9 +137,9 @@ def _registered(detections: Sequence[Detection], scene: Scene, sights: Mapping[i
 
 
 def _cast_observation(detection: Detection, frame: int, cast: Cast, scene: Scene) -> Observation:
-    row = mapped_row(detection, frame, cast.place.tolist(), len(cast.point_ids), "surface", scene.model)
+    row = mapped_row(detection, frame, cast.place.tolist(), len(cast.point_ids), PlacementMethod.SURFACE, scene.model)
     if cast.contradicted:
-        row = replace(row, outcome=Outcome.APPROXIMATE, reason="contradicted")
+        row = replace(row, outcome=Outcome.APPROXIMATE, reason=Reason.CONTRADICTED)
     return Observation(
         row,
         cast.patch.points,
@@ -145,12 +149,12 @@ def _cast_observation(detection: Detection, frame: int, cast: Cast, scene: Scene
         cast.parts,
         cast.point_ids,
         cast.points,
-        detection.track_id,
+        _track(detection),
     )
 
 
 def _estimate_observation(
-    detection: Detection, frame: int | None, estimate: Estimate | None, reason: str, scene: Scene
+    detection: Detection, frame: int | None, estimate: Estimate | None, reason: Reason, scene: Scene
 ) -> Observation:
     if estimate is None:
         return _without(unplaced_row(detection, reason, frame), detection)
@@ -164,12 +168,12 @@ def _without_pose(
     samples: Footprint,
     index: int | None,
     scene: Scene,
-    times: Times,
+    frames: RunFrames,
     matches: Matches,
     reach_s: float,
-) -> tuple[Sight, str] | None:
+) -> tuple[Sight, PlacementMethod] | None:
     """A sight from a registered neighbour that shows the same pixels, else from a pose between two of them."""
-    sight = _sight_like(number, detection, samples, scene, times)
+    sight = _sight_like(number, detection, samples, scene, frames)
     if index is not None:
         for other, own_xy, other_xy in matches(index):
             view = scene.views.row(other)
@@ -177,20 +181,20 @@ def _without_pose(
             if view is not None and carried is not None:
                 moved = _moved(sight, carried, scene, view)
                 if len(moved.samples.xy):
-                    return moved, "propagated"
-    view_times = np.array([times.time_of_index[int(i)] for i in scene.views.frame_index])
+                    return moved, PlacementMethod.PROPAGATED
+    view_times = np.array([frames.time_of_index[int(i)] for i in scene.views.frame_index])
     pose = between(scene.views, view_times, detection.time_s, reach_s) if len(view_times) > 2 else None
     if pose is None or pose[2] > MAX_ERROR_PX:
         return None
     R, center, _ = pose
-    return replace(sight, R=R, origin=center), "interpolated"
+    return replace(sight, R=R, origin=center), PlacementMethod.INTERPOLATED
 
 
-def _sight_like(number: int, detection: Detection, samples: Footprint, scene: Scene, times: Times) -> Sight:
+def _sight_like(number: int, detection: Detection, samples: Footprint, scene: Scene, frames: RunFrames) -> Sight:
     """A sight that still lacks its pose."""
     box = box_in_crop_px(detection.box, scene.crop, "source")
-    frames = scene.views.frame_index.tolist()
-    near = min(frames, key=lambda frame: abs(times.time_of_index[frame] - detection.time_s), default=-1)
+    registered = scene.views.frame_index.tolist()
+    near = min(registered, key=lambda frame: abs(frames.time_of_index[frame] - detection.time_s), default=-1)
     return Sight(number, detection.label, detection.score, box, samples, np.zeros(3), np.eye(3), None, near)
 
 
@@ -209,14 +213,17 @@ def _moved(sight: Sight, carried: F64, scene: Scene, view: int) -> Sight:
 
 
 def _estimates(
-    detections: Sequence[Detection], scene: Scene, estimated: Mapping[int, tuple[Sight, str, str]], times: Times
+    detections: Sequence[Detection],
+    scene: Scene,
+    estimated: Mapping[int, tuple[Sight, PlacementMethod, Reason]],
+    frames: RunFrames,
 ) -> dict[int, Observation]:
     """Sights with a pose that is not their own, cast in the same way and marked as estimates."""
     found: dict[int, Observation] = {}
     results = cast_sights(scene, [sight for sight, _, _ in estimated.values()])
     for (number, (_, rung, reason)), cast in zip(estimated.items(), results, strict=True):
         detection = detections[number]
-        index = times.index_of_source.get(-1 if detection.source_index is None else detection.source_index)
+        index = frames.index_of_source.get(-1 if detection.source_index is None else detection.source_index)
         if isinstance(cast, Missed):
             found[number] = _without(unplaced_row(detection, reason, index), detection)
         else:
@@ -227,4 +234,9 @@ def _estimates(
 
 def _without(row: DetectionRow, detection: Detection) -> Observation:
     nothing = np.zeros((0, 3))
-    return Observation(row, nothing, np.zeros(3), 0.0, None, None, np.zeros(0, np.int64), nothing, detection.track_id)
+    return Observation(row, nothing, np.zeros(3), 0.0, None, None, np.zeros(0, np.int64), nothing, _track(detection))
+
+
+def _track(detection: Detection) -> str | None:
+    """Detectors number tracks or name them; as text they compare alike."""
+    return None if detection.track_id is None else str(detection.track_id)

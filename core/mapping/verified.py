@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 from core.geometry.boxes import Box
 from core.mapping.support import observations_of
+
+if TYPE_CHECKING:
+    import pycolmap
 
 MIN_POINTS = 3
 """Points in a box that make it more than a chance match, as for `core.mapping.support_check`."""
@@ -15,11 +18,11 @@ MIN_VIEWS = 3
 """Views that must agree on a point; two rays nearly always meet somewhere."""
 
 
-def verified_detections(model: Any, boxes: Mapping[int, Sequence[tuple[Box, str]]]) -> int:
+def verified_detections(model: pycolmap.Reconstruction, boxes: Mapping[int, Sequence[tuple[Box, str]]]) -> int:
     """How many boxes hold points of the model that other views confirm.
 
     Args:
-        model: `pycolmap.Reconstruction`, image_id = frame index + 1.
+        model: its image_id = frame index + 1.
         boxes: crop pixels and label by frame index, see `core.mapping.support.boxes_by_frame`; those of frames that
             are not registered count as not verified.
     """

@@ -8,13 +8,16 @@ from pathlib import Path
 
 from core.flags import Verdict
 from core.json_files import write_json
-from core.mapping.rows import DETECTION_COLUMNS
+from core.outputs import DEFECTS, FRAMES, QUALITY, SUMMARY
 from core.report.quality import build_quality, collect_flags, verdict_of
 from core.report.record import Document, Item, Row, RunRecord
-from core.report.rows import CASE_COLUMNS, FRAME_COLUMNS, case_rows, detection_rows, frame_rows
+from core.report.rows import case_rows, detection_rows, frame_rows
 from core.report.summary import build_summary
 from core.report.tables import write_csv
-from core.timeline.rows import TIMELINE_COLUMNS
+from core.scene.case import CASE_COLUMNS
+from core.scene.defect import TIMELINE_COLUMNS
+from core.scene.detection import DETECTION_COLUMNS
+from core.scene.frame import FRAME_COLUMNS
 
 
 @dataclass(frozen=True)
@@ -47,11 +50,11 @@ def build_report(record: RunRecord) -> Report:
         verdict=verdict,
         summary=build_summary(record, verdict, detections, timeline, defects),
         quality=build_quality(record, verdict, flags, cases, detections),
-        frames=frame_rows(record),
-        cases=cases,
-        detections=detections,
-        timeline=timeline,
-        defects=defects,
+        frames=[row.to_dict() for row in frame_rows(record)],
+        cases=[row.to_dict() for row in cases],
+        detections=[row.to_dict() for row in detections],
+        timeline=[row.to_dict() for row in timeline],
+        defects=[row.to_dict() for row in defects],
     )
 
 
@@ -62,13 +65,13 @@ def write_tables(report: Report, out_dir: Path) -> list[str]:
         "mapping/detections": (DETECTION_COLUMNS, report.detections),
         "mapping/timeline": (TIMELINE_COLUMNS, report.timeline),
     }
-    write_json(out_dir / "summary.json", report.summary)
-    write_json(out_dir / "quality.json", report.quality)
-    write_csv(out_dir / "frames.csv", FRAME_COLUMNS, report.frames)
-    written = ["summary.json", "quality.json", "frames.csv"]
+    write_json(out_dir / SUMMARY, report.summary)
+    write_json(out_dir / QUALITY, report.quality)
+    write_csv(out_dir / FRAMES, FRAME_COLUMNS, report.frames)
+    written = [SUMMARY, QUALITY, FRAMES]
     for name, (names, rows) in columns.items():
         write_csv(out_dir / f"{name}.csv", names, rows)
         write_json(out_dir / f"{name}.json", list(rows))
         written += [f"{name}.csv", f"{name}.json"]
-    write_json(out_dir / "mapping" / "defects.json", list(report.defects))
-    return [*written, "mapping/defects.json"]
+    write_json(out_dir / DEFECTS, list(report.defects))
+    return [*written, DEFECTS]

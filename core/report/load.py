@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
-from core.json_files import read_json
-from core.report.models import join_detections, join_lists
+from core.io.annotations import read_detections, read_rows
+from core.io.frames import read_frames, read_registered
+from core.io.timeline import read_defects, read_events
+from core.report.models import join_detections
 from core.report.record import RunTables
+from core.scene.frame import RunFrames
 from core.task_key import key_of, piece_of, stage_of
+
+T = TypeVar("T")
 
 
 def served_pieces(keys: Collection[str]) -> list[int]:
@@ -22,19 +27,25 @@ def served_pieces(keys: Collection[str]) -> list[int]:
 def load_tables(folders: Mapping[str, Path]) -> RunTables:
     """Tables of a run from the result folders of its finished tasks, by task key; missing ones stay empty."""
 
-    def table(key: str, name: str, default: object = ()) -> Any:  # see `core.json_files.read_json`
-        path = folders[key] / name if key in folders else None
-        return read_json(path) if path is not None and path.is_file() else default
+    def table(key: str, read: Callable[[Path], T]) -> T | None:
+        """None where the task is not finished, or left no such table."""
+        try:
+            return read(folders[key]) if key in folders else None
+        except FileNotFoundError:
+            return None
 
     further = served_pieces(folders)
     timelines = [key_of("timeline", piece) for piece in (0, *further)]
-    mapped = table("timeline", "detections.json", table("map_defects", "detections.json", None))
+    mapped = [table(key, read_rows) for key in timelines]
+    rows = table("map_defects", read_rows) if mapped[0] is None else mapped[0]
+    if further:
+        rows = join_detections([own or [] for own in mapped])
     return RunTables(
-        detections=table("annotations", "detections.json"),
-        frames=table("frames", "frames.json"),
-        registered=table("extend", "registered.json"),
-        registered_further={piece: table(key_of("extend", piece), "registered.json") for piece in further},
-        mapped_rows=mapped if not further else join_detections([table(key, "detections.json") for key in timelines]),
-        timeline=join_lists([table(key, "timeline.json") for key in timelines]),
-        defects=join_lists([table(key, "defects.json") for key in timelines]),
+        detections=table("annotations", read_detections) or [],
+        frames=table("frames", read_frames) or RunFrames(()),
+        registered=table("extend", read_registered) or [],
+        registered_further={piece: table(key_of("extend", piece), read_registered) or [] for piece in further},
+        mapped_rows=rows,
+        timeline=[event for key in timelines for event in table(key, read_events) or ()],
+        defects=[record for key in timelines for record in table(key, read_defects) or ()],
     )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from core.flags import Flag, Severity
 from core.graph import STAGES
-from core.mapping.rows import Outcome
 from core.report.record import RunRecord, TaskRecord
+from core.scene.detection import Outcome
 from core.states import RunState, TaskState
 from core.task_key import key_of, piece_of
 
@@ -43,8 +43,8 @@ def _failed(task: TaskRecord) -> Flag:
 
 
 def _nothing_placed(record: RunRecord) -> list[Flag]:
-    in_video = sum(row.get("source_index") is not None for row in record.tables.detections)
-    placed = sum(row["outcome"] == Outcome.MAPPED for row in record.tables.mapped_rows or ())
+    in_video = sum(row.source_index is not None for row in record.tables.detections)
+    placed = sum(row.outcome == Outcome.MAPPED for row in record.tables.mapped_rows or ())
     return (
         [Flag("nothing_mapped", Severity.ERROR, 0.0, 1.0, f"{in_video} detections")] if in_video and not placed else []
     )

@@ -9,12 +9,14 @@ from core.checks.parallax import cases_parallax
 from core.flags import Flag, FlagFields, Severity, Verdict, error_codes
 from core.report.funnel import funnel, losses, support_counts
 from core.report.missing import missing_parts
-from core.report.record import Document, Item, Row, RunRecord, TaskRecord
+from core.report.record import Document, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
-from core.report.search import refinement_gain, spread, weak_cases
 from core.report.tables import SCHEMA_VERSION
-from core.report.thesis_tables import table_3_2, table_3_3, table_3_4, table_3_5
+from core.scene.case import CaseKind, CaseRow
+from core.scene.detection import DetectionRow
 from core.task_key import key_of, part_of, piece_of
+from core.thesis.search import refinement_gain, spread, weak_cases
+from core.thesis.tables import thesis_tables
 
 _SEVERITY_RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
@@ -25,7 +27,7 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     Worst first, none twice.
     """
     flags = [*_settings_flags(record), *missing_parts(record)]
-    still = cases_parallax([task.facts for task in record.tasks if task.stage in ("coarse", "refine") and task.facts])
+    still = cases_parallax([task.facts for task in record.tasks if task.stage in tuple(CaseKind) and task.facts])
     if still is not None:
         flags.append(still)
     for task in record.tasks:
@@ -39,7 +41,7 @@ def collect_flags(record: RunRecord) -> list[Flag]:
 
 def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFields]:
     """Of the cases, the checks of the chosen one speak for the run, and only where no final model was made of it."""
-    is_case = task.stage in ("coarse", "refine")
+    is_case = task.stage in tuple(CaseKind)
     if is_case and (record.facts("extend") or part_of(task.key) != selected_case(record)):
         return ()
     checks: Sequence[FlagFields] = task.facts.get("checks", ())
@@ -64,7 +66,11 @@ def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
 
 
 def build_quality(
-    record: RunRecord, verdict: Verdict, flags: Sequence[Flag], cases: Sequence[Row], detections: Sequence[Row]
+    record: RunRecord,
+    verdict: Verdict,
+    flags: Sequence[Flag],
+    cases: Sequence[CaseRow],
+    detections: Sequence[DetectionRow],
 ) -> Document:
     """The object of quality.json. Unknown = null; nothing is guessed."""
     defects = [] if verdict == Verdict.REFUSED else record.tables.defects
@@ -87,18 +93,22 @@ def build_quality(
         "reprojection_error": _reprojection(record),
         "surface": _surface(record),
         "search": {
-            "coarse": spread(cases, "coarse"),
-            "refined": spread(cases, "refine"),
+            "coarse": spread(cases, CaseKind.COARSE),
+            "refined": spread(cases, CaseKind.REFINE),
             "gain": refinement_gain(cases),
             "weak": weak_cases(cases),
             "losers": _losers(record, cases),
         },
-        "tables": {
-            "3.2": table_3_2(record),
-            "3.3": table_3_3(record, cases),
-            "3.4": table_3_4(record, detections, steps, support),
-            "3.5": table_3_5(record, cases),
-        },
+        "tables": thesis_tables(
+            record.facts,
+            record.settings,
+            selected_case(record),
+            cases,
+            detections,
+            steps,
+            support,
+            len(record.tables.timeline),
+        ),
     }
 
 
@@ -123,8 +133,8 @@ def _registration(record: RunRecord) -> dict[str, object]:
     """Registered shares, of the frames offered and of all frames of the video."""
     offered, registered = len(record.tables.frames), len(record.tables.registered)
     frames, registered_set = record.tables.frames, set(record.tables.registered)
-    annotated = {row["source_index"] for row in record.tables.detections if row.get("source_index") is not None}
-    seen = {frame["source_index"] for frame in frames if frame["index"] in registered_set}
+    annotated = {row.source_index for row in record.tables.detections if row.source_index is not None}
+    seen = {frame.source_index for frame in frames if frame.index in registered_set}
     in_video = record.facts("probe").get("n_frames")
     return {
         "frames_in_video": in_video,
@@ -145,7 +155,7 @@ def _models(record: RunRecord) -> list[dict[str, object]]:
         facts = record.facts(key_of("extend", number))
         if facts:
             names = ("registered_images", "points3D", "mean_reprojection_error_px")
-            own = sum(defect.get("model", 0) == number for defect in record.tables.defects)
+            own = sum(defect.model == number for defect in record.tables.defects)
             rows.append({"model": number, **{name: facts.get(name) for name in names}, "defects": own})
     return rows
 
@@ -168,40 +178,42 @@ def _surface(record: RunRecord) -> dict[str, object]:
     return {name: facts.get(name) for name in names}
 
 
-def _losers(record: RunRecord, cases: Sequence[Row]) -> list[dict[str, object]]:
+def _losers(record: RunRecord, cases: Sequence[CaseRow]) -> list[dict[str, object]]:
     """The cases that were not selected, best first, each with why it lost.
 
     `verified_detections` is null for coarse cases, which lost before detections were asked for.
     """
     ranked = record.facts("reduce_refine").get("ranking", ())
     verified = {row["name"]: row.get("verified_detections") for row in ranked}
-    winner = next((row["name"] for row in cases if row["selected"]), None)
-    checks = {part_of(task.key): task.facts.get("checks", ()) for task in record.of_stage("coarse", "refine")}
+    winner = next((row.name for row in cases if row.selected), "")
+    checks = {part_of(task.key): task.facts.get("checks", ()) for task in record.of_stage(*CaseKind)}
     order = sorted(
-        (row for row in cases if not row["selected"]),
+        (row for row in cases if not row.selected),
         key=lambda row: (
-            bool(row["vetoed"]),
-            -(verified.get(row["name"]) or 0),
-            -int(row["registered_images"] or 0),
-            -int(row["points3D"] or 0),
-            row["name"],
+            bool(row.vetoed),
+            -(verified.get(row.name) or 0),
+            -row.registered_images,
+            -row.points3D,
+            row.name,
         ),
     )
-    names = ("name", "status", "registered_images", "points3D")
     return [
         {
-            **{name: row[name] for name in names},
-            "verified_detections": verified.get(row["name"]),
-            "why": _why_lost(row, checks[str(row["name"])], verified.get(row["name"]), verified.get(winner)),
+            "name": row.name,
+            "status": row.status,
+            "registered_images": row.registered_images,
+            "points3D": row.points3D,
+            "verified_detections": verified.get(row.name),
+            "why": _why_lost(row, checks[row.name], verified.get(row.name), verified.get(winner)),
         }
         for row in order
     ]
 
 
-def _why_lost(row: Row, checks: Sequence[Item], verified: int | None, of_winner: int | None) -> str:
-    if row["status"] != "succeeded":
-        return str(row["reason"] or row["status"])
-    if row["vetoed"]:
+def _why_lost(row: CaseRow, checks: Sequence[Row], verified: int | None, of_winner: int | None) -> str:
+    if not row.succeeded:
+        return str(row.reason or row.status)
+    if row.vetoed:
         return f"vetoed: {error_codes(checks)}"
     if verified is not None and of_winner is not None and verified < of_winner:
         return f"verified detections: {verified} against {of_winner}"

@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from core.scene.defect import DefectRecord, EventRow
+from core.scene.detection import Detection, DetectionRow
+from core.scene.frame import RunFrames
 from core.settings import Settings
 from core.stage import Facts
 from core.states import RunState, TaskState
@@ -47,18 +50,20 @@ class TaskRecord:
 class RunTables:
     """Tables that stages left in their result folders; empty where a stage did not come to its end."""
 
-    detections: Sequence[Item] = ()
+    detections: Sequence[Detection] = ()
     """`annotations`: detections as read."""
-    frames: Sequence[Item] = ()
-    """`frames`: frame table of the search."""
+    frames: RunFrames = field(default_factory=lambda: RunFrames(()))
+    """`frames`: frame table of the run."""
     registered: Sequence[int] = ()
     """`extend`: indices of the registered frames."""
     registered_further: Mapping[int, Sequence[int]] = field(default_factory=dict)
     """The same of further models, by number."""
-    mapped_rows: Sequence[Item] | None = None
+    mapped_rows: Sequence[DetectionRow] | None = None
     """`timeline` (else `map_defects`): rows of the detections; None = mapping was not reached."""
-    timeline: Sequence[Item] = ()
-    defects: Sequence[Item] = ()
+    timeline: Sequence[EventRow] = ()
+    """`timeline`: events of all models; their ids are told apart where they are made."""
+    defects: Sequence[DefectRecord] = ()
+    """`timeline`: defects of all models."""
 
 
 @dataclass(frozen=True)

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from core.fingerprint import digest_of
 from core.flags import Verdict
 from core.graph import STAGES
-from core.mapping.rows import Outcome
-from core.report.record import Document, Item, Row, RunRecord, TaskRecord
+from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
+from core.scene.defect import DefectRecord, EventRow
+from core.scene.detection import DetectionRow, Outcome
 from core.states import StageState, TaskState
 
 
 def build_summary(
-    record: RunRecord, verdict: Verdict, detections: Sequence[Row], timeline: Sequence[Item], defects: Sequence[Item]
-) -> Document:
+    record: RunRecord,
+    verdict: Verdict,
+    detections: Sequence[DetectionRow],
+    timeline: Sequence[EventRow],
+    defects: Sequence[DefectRecord],
+) -> dict[str, Any]:
     """The object of summary.json."""
     parameters = record.settings.model_dump(mode="json")
     return {
@@ -96,8 +102,11 @@ def stage_state(states: Sequence[TaskState]) -> StageState:
 
 
 def _headline(
-    record: RunRecord, detections: Sequence[Row], timeline: Sequence[Item], defects: Sequence[Item]
-) -> dict[str, object]:
+    record: RunRecord,
+    detections: Sequence[DetectionRow],
+    timeline: Sequence[EventRow],
+    defects: Sequence[DefectRecord],
+) -> dict[str, Any]:
     sparse, fused, mesh = record.facts("extend"), record.facts("fuse"), record.facts("mesh")
     return {
         "frames": len(record.tables.frames),
@@ -110,7 +119,7 @@ def _headline(
         "mesh_vertices": mesh.get("n_vertices"),
         "mesh_faces": mesh.get("n_faces"),
         "detections": len(detections),
-        "mapped": sum(row["outcome"] == Outcome.MAPPED for row in detections),
+        "mapped": sum(row.outcome == Outcome.MAPPED for row in detections),
         "events": len(timeline),
         "defects": len(defects),
     }

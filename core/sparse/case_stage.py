@@ -7,13 +7,15 @@ import pycolmap
 
 from core.checks.model import check_model
 from core.flags import Flag, Severity, worst
+from core.io.sparse import has_model, read_model, write_model
+from core.scene.case import CaseKind, CaseStatus
 from core.sparse.cases import Case, CaseResult, run_case
 from core.stage import Facts, StageResult, StageTask
 from core.task_key import key_of
-from core.viewgraph import read_table
+from core.viewgraph import read_graph
 
 
-def run_case_task(task: StageTask, kind: str) -> StageResult:
+def run_case_task(task: StageTask, kind: CaseKind) -> StageResult:
     """Map the window of a task; no model is an outcome, not an error."""
     case = Case(
         task.input("graph"),
@@ -29,26 +31,22 @@ def run_case_task(task: StageTask, kind: str) -> StageResult:
 
     result = run_case(case, _start_model(task), progress)
     if result.model is not None:
-        folder = task.out / "model"
-        folder.mkdir()
-        result.model.write_binary(folder)
+        write_model(task.out, result.model)
     return StageResult({**_row(task, kind, result), **trust_facts(case_checks(result, case))})
 
 
 def _start_model(task: StageTask) -> pycolmap.Reconstruction | None:
     """The model named by the plan; None without one, or when that case failed or has no model."""
     name = task.args.get("warm_from")
-    folder = task.inputs.get(key_of("coarse", part=str(name))) if name else None
-    if folder is None or not (folder / "model").is_dir():
-        return None
-    return pycolmap.Reconstruction(folder / "model")
+    folder = task.inputs.get(key_of(CaseKind.COARSE, part=str(name))) if name else None
+    return read_model(folder) if folder is not None and has_model(folder) else None
 
 
 def case_checks(result: CaseResult, case: Case) -> list[Flag]:
     """What speaks against the model of a case, by the same checks as for the final model; none without a model."""
     if result.model is None:
         return []
-    table = read_table(case.graph / "graph.npz")
+    table = read_graph(case.graph)
     return check_model(result.model, result.stats, table, result.frames)
 
 
@@ -57,15 +55,15 @@ def trust_facts(flags: list[Flag]) -> Facts:
     return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == Severity.ERROR)}
 
 
-def _row(task: StageTask, kind: str, result: CaseResult) -> Facts:
+def _row(task: StageTask, kind: CaseKind, result: CaseResult) -> Facts:
     stats = result.stats
     return {
         "name": task.args["name"],
         "kind": kind,
         "start": int(task.args["start"]),
         "end": int(task.args["end"]),
-        "status": "no_model" if result.model is None else "succeeded",
-        "reason": result.reason,
+        "status": CaseStatus.NO_MODEL if result.model is None else CaseStatus.SUCCEEDED,
+        "reason": result.reason or "",
         "frames": result.frames,
         "models": result.models,
         "registered_images": stats.registered_images,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from core.checks.stats import ModelStats, model_stats
+from core.scene.case import CaseReason, StartMode
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, free_distortion, transfer_poses, triangulate
 from core.sparse.initial_pair import rank_initial_pairs
@@ -14,7 +15,7 @@ from core.sparse.mapper import Progress, best_model, map_images, mapper_options,
 from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import Tracks, build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import Frames, read_frames, within
-from core.viewgraph import PairTable, read_table
+from core.viewgraph import PairTable, database_of, read_graph
 
 if TYPE_CHECKING:
     import pycolmap
@@ -47,15 +48,14 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseResult:
-    """How a case ended. `model` is None when there is none, then `reason` is a code."""
+    """How a case ended. `model` is None when there is none, then `reason` says why."""
 
     frames: int
     models: int
-    start_mode: str
-    """``scratch``, ``warm``, or ``warm_then_scratch`` when a warm start was tried and was worse."""
+    start_mode: StartMode
     model: pycolmap.Reconstruction | None
     stats: ModelStats
-    reason: str = ""
+    reason: CaseReason | None = None
 
 
 def run_case(
@@ -68,24 +68,24 @@ def run_case(
         start_model: model of another case to start from; None maps from scratch.
         progress: see `core.sparse.mapper.Progress`.
     """
-    frames = read_frames(case.graph / "database.db", case.start, case.end)
-    table = within(read_table(case.graph / "graph.npz"), case.start, case.end)
+    frames = read_frames(database_of(case.graph), case.start, case.end)
+    table = within(read_graph(case.graph), case.start, case.end)
     tracks = build_tracks(table)
     n_frames = len(frames.names)
     reason = _why_not(table, frames, tracks, case.settings)
     if reason:
-        return CaseResult(n_frames, 0, "scratch", None, NO_MODEL, reason)
+        return CaseResult(n_frames, 0, StartMode.SCRATCH, None, NO_MODEL, reason)
     window = _Window(case, frames, table, tracks, progress)
     warm = None if start_model is None else window.map_warm(start_model)
     if warm is not None and start_model is not None and not _is_worse(warm, start_model, n_frames):
-        return CaseResult(n_frames, 1, "warm", warm, model_stats(warm))
-    mode = "scratch" if start_model is None else "warm_then_scratch"
+        return CaseResult(n_frames, 1, StartMode.WARM, warm, model_stats(warm))
+    mode = StartMode.SCRATCH if start_model is None else StartMode.WARM_THEN_SCRATCH
     n_models, best = window.map_scratch()
     # A wrong model can have more points than a right one, its tracks being broken: only images count here.
     if warm is not None and (best is None or warm.num_reg_images() > best.num_reg_images()):
         n_models, best = 1, warm
     if best is None:
-        return CaseResult(n_frames, 0, mode, None, NO_MODEL, "no_initial_pair")
+        return CaseResult(n_frames, 0, mode, None, NO_MODEL, CaseReason.NO_INITIAL_PAIR)
     return CaseResult(n_frames, n_models, mode, best, model_stats(best))
 
 
@@ -100,7 +100,7 @@ class _Window:
         self._table, self._tracks = table, tracks
         tuned = case.settings.bundle_adjustment == "tuned"
         self._options = mapper_options(case.settings, threads=case.threads, seed=case.seed, tuned=tuned)
-        self._full = open_cache(case.graph / "database.db", frames.names, MIN_MATCHES)
+        self._full = open_cache(database_of(case.graph), frames.names, MIN_MATCHES)
         self._search = self._full
         if case.settings.search_tracks:
             chosen = choose_keypoints(tracks, frames, case.settings.search_tracks)
@@ -147,11 +147,11 @@ def _is_worse(model: pycolmap.Reconstruction, start_model: pycolmap.Reconstructi
     return errors[0] > ERROR_RISE * errors[1]
 
 
-def _why_not(table: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> str:
-    """Code of what makes mapping pointless; empty when nothing does."""
+def _why_not(table: PairTable, frames: Frames, tracks: Tracks, settings: MapperSettings) -> CaseReason | None:
+    """What makes mapping pointless; None when nothing does."""
     if len(frames.names) < settings.min_model_size:
-        return "too_few_frames"
+        return CaseReason.TOO_FEW_FRAMES
     if not (table.n_inliers >= settings.init_min_num_inliers).any():
-        return "too_few_matches"
+        return CaseReason.TOO_FEW_MATCHES
     residual = rotation_residual_px(tracks, frames)
-    return "no_parallax" if residual is not None and residual < MIN_RESIDUAL_PX else ""
+    return CaseReason.NO_PARALLAX if residual is not None and residual < MIN_RESIDUAL_PX else None

@@ -11,7 +11,7 @@ from core.sparse.densify import densify, transfer_poses, triangulate
 from core.sparse.mapper import Progress, map_images, mapper_options, open_cache
 from core.sparse.tracks import build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import read_frames
-from core.viewgraph import read_table
+from core.viewgraph import database_of, read_graph
 
 if TYPE_CHECKING:
     import pycolmap
@@ -47,8 +47,8 @@ def register_rest(
         threads: of its solvers.
         progress: see `core.sparse.mapper.Progress`.
     """
-    frames = read_frames(graph / "database.db", 0, n_frames)
-    table = read_table(graph / "graph.npz")
+    frames = read_frames(database_of(graph), 0, n_frames)
+    table = read_graph(graph)
     tracks = build_tracks(table)
     chosen = choose_keypoints(tracks, frames, settings.search_tracks or EXTEND_TRACKS)
     thin = thin_cache(table, frames, chosen, MIN_MATCHES)
@@ -59,7 +59,7 @@ def register_rest(
         options.fix_existing_frames = True
         model = _grown(model, map_images(thin, options, start_model=model, progress=progress))
         options.fix_existing_frames = False
-    full = open_cache(graph / "database.db", (), MIN_MATCHES)
+    full = open_cache(database_of(graph), (), MIN_MATCHES)
     dense = densify(full, model, tracks, frames, options)
     if dense.num_reg_images() < len(frames.names):
         dense = _grown(dense, map_images(full, options, start_model=dense, progress=progress))

@@ -16,6 +16,7 @@ from core.checks.stats import model_stats
 from core.features.io import FrameFeatures
 from core.matching.auto import PairMatcher
 from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
+from core.scene.frame import image_name
 from core.settings import Settings
 from core.sparse.initial_pair import rank_initial_pairs
 from core.sparse.mapper import best_model, map_images, mapper_options
@@ -128,7 +129,7 @@ def _match(
         report(row / len(pairs), f"frames {a} and {b}")
         matched.append(matcher.match(features[a], features[b]))
     keypoints = tuple(features[index].keypoints.astype(np.float64) for index in indices)
-    frames = Frames(indices, tuple(f"{index:04d}.jpg" for index in indices), keypoints, camera)
+    frames = Frames(indices, tuple(image_name(index) for index in indices), keypoints, camera)
     return frames, within(make_table(pairs, matched), *span)
 
 

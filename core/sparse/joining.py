@@ -25,7 +25,7 @@ from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.pieces import groups_of
 from core.sparse.tracks import build_tracks
 from core.sparse.view_graph import read_frames
-from core.viewgraph import PairTable
+from core.viewgraph import PairTable, database_of
 
 F64 = NDArray[np.float64]
 
@@ -173,10 +173,10 @@ def _join(
     even, odd = slice(0, None, 2), slice(1, None, 2)
     if not holds(fit_similarity(first.rows(even), second.rows(even)), first.rows(odd), second.rows(odd)):
         return model, len(shared), "disagree"
-    cache = open_cache(graph / "database.db", (), MIN_MATCHES)
+    cache = open_cache(database_of(graph), (), MIN_MATCHES)
     together = _with_poses(cache, model, piece, fit_similarity(first, second))
     options = mapper_options(settings, threads=threads, seed=seed, tuned=True)
-    joined = densify(cache, together, build_tracks(table), read_frames(graph / "database.db", 0, n_frames), options)
+    joined = densify(cache, together, build_tracks(table), read_frames(database_of(graph), 0, n_frames), options)
     adjustment = pycolmap.BundleAdjustmentOptions()
     adjustment.print_summary = False
     adjustment.ceres.solver_options.num_threads = threads

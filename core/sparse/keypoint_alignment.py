@@ -12,20 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+import pycolmap
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.geometry.pose import camera_centers
+from core.scene.frame import image_name
+from core.scene.views import Views, views_of
 from core.sparse.alignment_kernels import align_patches, take_patches
-from core.sparse.points import poses_of
-
-if TYPE_CHECKING:
-    import pycolmap
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -87,30 +84,13 @@ class _Tracks:
     """(m, 2) px"""
 
 
-@dataclass(frozen=True)
-class _Views:
-    """Registered images, ordered by id."""
-
-    ids: list[int]
-    names: list[str]
-    R: F64
-    """(f, 3, 3) cam_from_world."""
-    t: F64
-    """(f, 3)"""
-
-    @property
-    def centers(self) -> F64:
-        """(f, 3)"""
-        return camera_centers(self.R, self.t)
-
-
 def align_keypoints(
     model: pycolmap.Reconstruction, read: Read, still: Bool | None = None, *, drop: bool = True, threads: int = 1
 ) -> Aligned:
     """Move keypoints of a model in place.
 
     Args:
-        model: `pycolmap.Reconstruction` of images that share one camera.
+        model: of images that share one camera.
         read: pictures of its images.
         still: (height, width) pixels that do not move with the scene; patches that touch one are not used.
         drop: delete observations that do not align, unless their image would be left with too few.
@@ -121,9 +101,9 @@ def align_keypoints(
     if not len(tracks.point):
         return Aligned(0, 0, 0.0)
     warps = _warps(tracks, views, next(iter(model.cameras.values())))
-    references = _by_image(tracks.reference, len(views.ids))
+    references = _by_image(tracks.reference, len(views))
     finite = np.asarray(np.isfinite(warps).all(axis=(1, 2)), np.bool_)
-    others = _by_image(tracks.image, len(views.ids), finite)
+    others = _by_image(tracks.image, len(views), finite)
     weights = _weights()
     moving = None if still is None else ~cv2.dilate(still.astype(np.uint8), np.ones((2 * RADIUS + 3,) * 2)).astype(bool)
     patches = np.empty((len(tracks.xyz), 2 * RADIUS + 3, 2 * RADIUS + 3), np.float32)
@@ -133,7 +113,7 @@ def align_keypoints(
         own = references[row]
         at = tracks.reference_xy[own] - PIXEL_CENTRE
         out = np.empty((len(own), *patches.shape[1:]), np.float32)
-        take_patches(_smooth(read(views.names[row])), at, out)
+        take_patches(_smooth(read(image_name(int(views.frame_index[row])))), at, out)
         out[~_on(moving, at)] = np.nan
         patches[own] = out
 
@@ -141,14 +121,14 @@ def align_keypoints(
         own = others[row]
         start = places[own]
         at = start.copy()
-        image = _smooth(read(views.names[row]))
+        image = _smooth(read(image_name(int(views.frame_index[row]))))
         score = align_patches(image, patches[tracks.point[own]], warps[own], weights, MAX_ITERATIONS, MAX_SHIFT_PX, at)
         found[own] = np.where(_on(moving, start), score, -1.0)
         places[own] = at
 
     with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(take, range(len(views.ids))))
-        list(pool.map(align, range(len(views.ids))))
+        list(pool.map(take, range(len(views))))
+        list(pool.map(align, range(len(views))))
     good = found >= MIN_CORRELATION
     _write(model, views, tracks, places + PIXEL_CENTRE, good, drop)
     shift = np.linalg.norm(places + PIXEL_CENTRE - tracks.xy, axis=1)[good]
@@ -184,15 +164,16 @@ def _weights() -> F64:
     return found
 
 
-def _views(model: pycolmap.Reconstruction) -> _Views:
-    ids = sorted(int(i) for i in model.reg_image_ids())
-    return _Views(ids, [str(model.image(i).name) for i in ids], *poses_of(model, ids))
+def _views(model: pycolmap.Reconstruction) -> Views:
+    """The registered images. Their poses are made contiguous: sums over strided arrays may differ in the last bit."""
+    views = views_of(model)
+    return replace(views, R=np.ascontiguousarray(views.R), t=np.ascontiguousarray(views.t))
 
 
-def _tracks(model: pycolmap.Reconstruction, views: _Views) -> _Tracks:
+def _tracks(model: pycolmap.Reconstruction, views: Views) -> _Tracks:
     """References are the images that look most nearly along the mean of their point's viewing directions."""
-    row_of = {image_id: row for row, image_id in enumerate(views.ids)}
-    keypoints = [np.array([p.xy for p in model.image(i).points2D]).reshape(-1, 2) for i in views.ids]
+    row_of = {image_id: row for row, image_id in enumerate(views.image_ids)}
+    keypoints = [np.array([p.xy for p in model.image(i).points2D]).reshape(-1, 2) for i in views.image_ids]
     point_ids = np.array(sorted(int(i) for i in model.point3D_ids()), np.int64)
     centers, towards = views.centers, np.empty((len(point_ids), 3))
     reference, reference_xy = np.empty(len(point_ids), np.int64), np.empty((len(point_ids), 2))
@@ -227,7 +208,7 @@ def _normals(xyz: F64, towards: F64) -> F64:
     return found
 
 
-def _warps(tracks: _Tracks, views: _Views, camera: pycolmap.Camera) -> F64:
+def _warps(tracks: _Tracks, views: Views, camera: pycolmap.Camera) -> F64:
     """(m, 2, 2) derivative of a place in the image by one in the reference, over the plane of the point."""
     step = 2.0
     columns = [
@@ -237,7 +218,7 @@ def _warps(tracks: _Tracks, views: _Views, camera: pycolmap.Camera) -> F64:
     return np.stack(columns, axis=-1)
 
 
-def _carried(tracks: _Tracks, views: _Views, camera: pycolmap.Camera, offset: F64) -> F64:
+def _carried(tracks: _Tracks, views: Views, camera: pycolmap.Camera, offset: F64) -> F64:
     """(m, 2) where the images see what lies on the point's plane at this offset (px) from the reference's keypoint."""
     flat = np.asarray(camera.cam_from_img(np.ascontiguousarray(tracks.reference_xy + offset))).reshape(-1, 2)
     ray = np.einsum("nji,nj->ni", views.R[tracks.reference], np.hstack([flat, np.ones((len(flat), 1))]))
@@ -253,12 +234,12 @@ def _carried(tracks: _Tracks, views: _Views, camera: pycolmap.Camera, offset: F6
     return carried
 
 
-def _write(model: pycolmap.Reconstruction, views: _Views, tracks: _Tracks, xy: F64, good: Bool, drop: bool) -> None:
+def _write(model: pycolmap.Reconstruction, views: Views, tracks: _Tracks, xy: F64, good: Bool, drop: bool) -> None:
     """Put the found places into the model; observations without one go where `drop` allows."""
-    left = np.bincount(tracks.reference, minlength=len(views.ids))
-    left += np.bincount(tracks.image[good], minlength=len(views.ids))
+    left = np.bincount(tracks.reference, minlength=len(views))
+    left += np.bincount(tracks.image[good], minlength=len(views))
     doomed = ~good & drop & (left >= MIN_PER_IMAGE)[tracks.image]
-    for image_id, moved in zip(views.ids, _by_image(tracks.image, len(views.ids), good), strict=True):
+    for image_id, moved in zip(views.image_ids, _by_image(tracks.image, len(views), good), strict=True):
         points = model.image(image_id).points2D
         for at in moved.tolist():
             points[int(tracks.keypoint[at])].xy = xy[at]
@@ -266,4 +247,4 @@ def _write(model: pycolmap.Reconstruction, views: _Views, tracks: _Tracks, xy: F
         point_id = int(tracks.point_ids[tracks.point[at]])
         # A track of two goes as a whole; it stays, as it is, for the adjustment to judge.
         if model.point3D(point_id).track.length() > 2:
-            model.delete_observation(views.ids[int(tracks.image[at])], int(tracks.keypoint[at]))
+            model.delete_observation(views.image_ids[int(tracks.image[at])], int(tracks.keypoint[at]))

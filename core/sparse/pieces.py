@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.matching.bridges import components_of, is_strong, select
+from core.scene.frame import image_name
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, run_case
 from core.sparse.mapper import restrict_model
@@ -62,7 +63,7 @@ def find_pieces(
         if model is None:
             continue
         # The window may reach over frames of an earlier model: these stay there.
-        model = restrict_model(model, [f"{frame:04d}.jpg" for frame in np.flatnonzero(left)])
+        model = restrict_model(model, [image_name(int(frame)) for frame in np.flatnonzero(left)])
         if model.num_reg_images() < MIN_FRAMES or is_wrong(model):
             continue
         models.append(model)

@@ -8,92 +8,113 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
-from core.flags import error_codes
-from core.stage import Facts
+from core.flags import FlagFields, error_codes
+from core.scene.case import CaseKind, CaseRow
 from core.task_key import parts_of
 
-Row = Facts
-"""Facts of a case, see `core.sparse.case_stage`."""
 
-WINNER_FIELDS = ("start", "end", "kind", "registered_images", "points3D", "start_mode")
-RANKING_FIELDS = ("name", "verified_detections", "registered_images", "points3D")
+@dataclass(frozen=True)
+class Candidate:
+    """A case that ended, and what it is worth to the inspection."""
 
+    row: CaseRow
+    checks: Sequence[FlagFields]
+    """Flags of its model, as JSON values."""
+    verified: int | None = None
+    """Detections that its points verify; None where they are not asked for."""
 
-def score(row: Row) -> tuple[int, int]:
-    """S(M) = (registered images, 3D points), compared lexicographically; of the row of a case."""
-    return int(row["registered_images"]), int(row["points3D"])
+    @property
+    def name(self) -> str:
+        """Name of the case."""
+        return self.row.name
 
 
 Standing = tuple[bool, int, tuple[int, int]]
 
 
-def standing(row: Row, veto: bool = True) -> Standing:
-    """What cases are ranked by: not vetoed before vetoed (unless `veto` is off), `verified_detections`, `score`."""
-    return not (veto and row.get("vetoed", False)), int(row.get("verified_detections", 0)), score(row)
+def standing(candidate: Candidate, veto: bool = True) -> Standing:
+    """What cases are ranked by: not vetoed before vetoed (unless `veto` is off), verified detections, the score."""
+    return not (veto and candidate.row.vetoed), candidate.verified or 0, candidate.row.score
 
 
-def rank(rows: Sequence[Row], veto: bool = True) -> list[Row]:
+def rank(candidates: Sequence[Candidate], veto: bool = True) -> list[Candidate]:
     """Cases that have a model, best first; equal ones keep the order of their names."""
-    with_model = [row for row in rows if row["status"] == "succeeded"]
-    by_name = sorted(with_model, key=lambda row: str(row["name"]))
-    return sorted(by_name, key=lambda row: standing(row, veto), reverse=True)
+    with_model = [candidate for candidate in candidates if candidate.row.succeeded]
+    by_name = sorted(with_model, key=lambda candidate: candidate.name)
+    return sorted(by_name, key=lambda candidate: standing(candidate, veto), reverse=True)
 
 
-def reduce_cases(rows: Sequence[Row], veto: bool = True) -> Facts:
+def reduce_cases(candidates: Sequence[Candidate], veto: bool = True) -> dict[str, Any]:
     """Facts of the reducer over the cases that ended.
 
     A vetoed case can win here when all are: refinement may still find a model to trust around it.
     Raises `NoReconstruction` with the reasons counted when no case has a model.
     """
-    ranking = rank(rows, veto)
+    ranking = rank(candidates, veto)
     if not ranking:
-        raise NoReconstruction(f"no case has a model: {_reasons(rows)}", where="search")
+        raise NoReconstruction(f"no case has a model: {_reasons(candidates)}", where="search")
     return _facts(ranking[0], ranking)
 
 
-def reduce_refined(coarse_best: Row, refined: Sequence[Row], veto: bool = True) -> Facts:
+def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], veto: bool = True) -> dict[str, Any]:
     """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
 
-    Rows may have `verified_detections`, all of them or none.
+    Verified detections are counted for all of them or for none.
     Raises `NoReconstruction` when the winner is vetoed, which with `veto` means that every candidate is.
     """
     ranking = rank(refined, veto)
     better = ranking and standing(ranking[0], veto) > standing(coarse_best, veto)
     winner = ranking[0] if better else coarse_best
-    others = [row for row in (*ranking, coarse_best) if row["name"] != winner["name"]]
+    others = [candidate for candidate in (*ranking, coarse_best) if candidate.name != winner.name]
     if not standing(winner, veto)[0]:
-        codes = error_codes(winner["checks"])
+        codes = error_codes(winner.checks)
         raise NoReconstruction(
-            f"every model was vetoed by the checks; the largest, {winner['name']}: {codes}", where="search"
+            f"every model was vetoed by the checks; the largest, {winner.name}: {codes}", where="search"
         )
-    return _facts(winner, [winner, *sorted(others, key=lambda row: standing(row, veto), reverse=True)])
+    return _facts(winner, [winner, *sorted(others, key=lambda candidate: standing(candidate, veto), reverse=True)])
 
 
-def case_rows(facts: Mapping[str, Facts], stage: str) -> list[Row]:
-    """Rows of the cases of `stage` among a task's facts, ordered by key."""
-    return [facts[key] for key in parts_of(facts, stage)]
+def candidates_of(facts: Mapping[str, Mapping[str, Any]], kind: CaseKind) -> list[Candidate]:
+    """Cases of a kind out of a task's facts, ordered by key."""
+    found = [facts[key] for key in parts_of(facts, kind)]
+    rows = [CaseRow.from_facts(own, seconds=None, selected=False) for own in found]
+    return [Candidate(row, own.get("checks", ())) for row, own in zip(rows, found, strict=True)]
 
 
-def find_row(rows: Sequence[Row], name: str) -> Row:
-    """The row of the case `name`; `StageFailed` when it is missing."""
-    for row in rows:
-        if row["name"] == name:
-            return row
+def find_candidate(candidates: Sequence[Candidate], name: str) -> Candidate:
+    """The case `name`; `StageFailed` when it is missing."""
+    for candidate in candidates:
+        if candidate.name == name:
+            return candidate
     raise StageFailed(f"the case {name} has no row", where="search")
 
 
-def _facts(winner: Row, ranking: Sequence[Row]) -> Facts:
+def _facts(winner: Candidate, ranking: Sequence[Candidate]) -> dict[str, Any]:
+    row = winner.row
     return {
-        "best": winner["name"],
-        **{field: winner[field] for field in WINNER_FIELDS},
-        "ranking": [{field: row[field] for field in RANKING_FIELDS if field in row} for row in ranking],
+        "best": row.name,
+        "start": row.start,
+        "end": row.end,
+        "kind": row.kind,
+        "registered_images": row.registered_images,
+        "points3D": row.points3D,
+        "start_mode": row.start_mode,
+        "ranking": [_place(candidate) for candidate in ranking],
     }
 
 
-def _reasons(rows: Sequence[Row]) -> str:
-    if not rows:
+def _place(candidate: Candidate) -> dict[str, Any]:
+    verified = {} if candidate.verified is None else {"verified_detections": candidate.verified}
+    row = candidate.row
+    return {"name": row.name, **verified, "registered_images": row.registered_images, "points3D": row.points3D}
+
+
+def _reasons(candidates: Sequence[Candidate]) -> str:
+    if not candidates:
         return "every case failed"
-    counts = Counter(str(row["reason"]) for row in rows)
-    return ", ".join(f"{reason} in {count} of {len(rows)} cases" for reason, count in sorted(counts.items()))
+    counts = Counter(str(candidate.row.reason or "") for candidate in candidates)
+    return ", ".join(f"{reason} in {count} of {len(candidates)} cases" for reason, count in sorted(counts.items()))

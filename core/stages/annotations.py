@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from core.annotations.parse import load_annotations
-from core.annotations.placed import place, write_placed
+from core.annotations.placed import place
 from core.annotations.summary import summarise
+from core.io.annotations import write_annotations
 from core.stage import StageResult, StageTask
 from core.video.table import FrameTable
 
@@ -17,7 +18,7 @@ def run(task: StageTask) -> StageResult:
     annotations = load_annotations(task.annotations)
     task.report(1, 2, f"{len(annotations.entries)} time keys")
     placed = place(annotations, FrameTable.read(task.input("probe")), task.settings.input.time_convention)
-    write_placed(placed, task.out)
+    write_annotations(task.out, placed.detections, placed.masks, placed.looked_at)
     summary = summarise(annotations, placed)
     return StageResult(
         {

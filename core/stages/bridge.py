@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-import json
-
 from core.features.io import feature_files, read_features
 from core.flags import Flag, Severity
+from core.io.frames import read_frames
 from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
 from core.verification import read_camera
-from core.viewgraph import PairTable, join_tables, make_table, read_table, table_facts, write_table
+from core.viewgraph import PairTable, join_tables, make_table, read_pairs, table_facts, write_dropped, write_pairs
 
 
 def run(task: StageTask) -> StageResult:
     """Write ``pairs.npz`` with the further pairs and ``dropped.json`` with the pairs over jumps."""
-    rows = sorted(
-        json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8")), key=lambda row: row["index"]
-    )
-    n_search = sum(row["role"] != "added" for row in rows)
-    position = positions([float(row["time_s"]) for row in rows], n_search)
+    frames = read_frames(task.input("frames"))
+    n_search = frames.n_search
+    position = positions(frames.times_s, n_search)
     files = feature_files(folder for _, folder in task.fan_in("features"))
-    keypoints = [read_features(files[index]).keypoints for index in range(len(rows))]
-    camera = read_camera(task.input("camera") / "camera.json")
+    keypoints = [read_features(files[index]).keypoints for index in range(len(frames))]
+    camera = read_camera(task.input("camera"))
     size = int(camera.width), int(camera.height)
 
-    table = join_tables(read_table(folder / "pairs.npz") for _, folder in task.fan_in("matches"))
+    table = join_tables(read_pairs(folder) for _, folder in task.fan_in("matches"))
     density = match_density(table, keypoints, *size)
     jumps = find_jumps(table, density, position, n_search)
     dropped = spans_any(table, position, jumps)
-    (task.out / "dropped.json").write_text(json.dumps(table.pairs[dropped].tolist()))
+    write_dropped(task.out, table.pairs[dropped])
     table = select(table, ~dropped)
 
     gaps = find_gaps(table, n_search)
@@ -43,10 +40,10 @@ def run(task: StageTask) -> StageResult:
     probes = [tried(place[:PROBES]) for place in places]
     rest = [tried(place[PROBES:]) for place, probe in zip(places, probes, strict=True) if is_strong(probe).any()]
     extra = join_tables([*probes, *rest])
-    extra = select(extra, agreeing(table, extra, len(rows)))
-    write_table(task.out / "pairs.npz", extra)
+    extra = select(extra, agreeing(table, extra, len(frames)))
+    write_pairs(task.out, extra)
     spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())
-    pieces = components_of(join_tables([table, extra]), len(rows))
+    pieces = components_of(join_tables([table, extra]), len(frames))
     task.report(1, 1)
     return StageResult(
         {

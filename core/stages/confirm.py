@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
-
-import pycolmap
+from typing import TYPE_CHECKING
 
 from core.checks.model import is_wrong
 from core.checks.stats import model_stats
+from core.io.sparse import read_model, write_model
+from core.scene.case import StartMode
 from core.sparse.cases import Case
 from core.sparse.confirm import confirmed_or_searched
 from core.stage import StageResult, StageTask
-from core.viewgraph import read_table
+from core.viewgraph import read_graph
+
+if TYPE_CHECKING:
+    import pycolmap
 
 
-def _veto(case: Case) -> Callable[[Any], bool]:
-    table = read_table(case.graph / "graph.npz")
+def _veto(case: Case) -> Callable[[pycolmap.Reconstruction], bool]:
+    table = read_graph(case.graph)
     return lambda model: is_wrong(model, table, case.end - case.start)
 
 
@@ -26,8 +29,8 @@ def run(task: StageTask) -> StageResult:
     A warm model inherits what was wrong with the one that it started from; one from scratch has nothing to confirm.
     """
     winner = task.facts["reduce_refine"]
-    from_scratch = winner["start_mode"] == "scratch"
-    model, kept = pycolmap.Reconstruction(task.input("reduce_refine") / "model"), "searched"
+    from_scratch = winner["start_mode"] == StartMode.SCRATCH
+    model, kept = read_model(task.input("reduce_refine")), "searched"
     if task.settings.model.confirm and not from_scratch:
         # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
         case = Case(
@@ -39,9 +42,7 @@ def run(task: StageTask) -> StageResult:
             lambda registered, offered: task.report(registered, offered, f"{registered} of {offered}"),
             is_wrong=_veto(case) if task.settings.model.veto else None,
         )
-    folder = task.out / "model"
-    folder.mkdir()
-    model.write_binary(folder)
+    write_model(task.out, model)
     stats = model_stats(model)
     return StageResult(
         {
@@ -50,7 +51,7 @@ def run(task: StageTask) -> StageResult:
             "points3D": stats.points3D,
             "mean_reprojection_error_px": stats.mean_reprojection_error_px,
             "median_reprojection_error_px": stats.median_reprojection_error_px,
-            "start_mode": "scratch" if kept == "confirmed" or from_scratch else winner["start_mode"],
+            "start_mode": StartMode.SCRATCH if kept == "confirmed" or from_scratch else winner["start_mode"],
             "kept": kept,
         }
     )

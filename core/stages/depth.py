@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from core.dense import cuda
-from core.dense.maps import DenseScene, DepthMap, open_scene, write_map
+from core.dense.maps import DenseScene, DepthMap, map_path, open_scene, write_map
 from core.dense.stereo import PhotometricStereo
 from core.dense.views import DenseView
 from core.stage import StageResult, StageTask
@@ -21,7 +21,7 @@ def run(task: StageTask) -> StageResult:
     maps = _on_cuda(task, scene, views) if method == "cuda" else _on_cpu(task, scene, views)
     shares = []
     for name, found in maps:
-        write_map(task.out / f"{name}.npz", found)
+        write_map(map_path(task.out, name), found)
         shares.append(found.valid_share)
     share = round(sum(shares) / max(1, len(shares)), 4)
     return StageResult({"n_views": len(shares), "valid_share": share, "method": method})

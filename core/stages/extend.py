@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
-import pycolmap
 from numpy.typing import NDArray
 
 from core.checks.lens import check_shift
 from core.checks.model import check_model, is_wrong
 from core.checks.stats import model_stats
 from core.errors import StageFailed
+from core.io.frames import images_folder, write_registered
+from core.io.sparse import read_model, write_model
 from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
@@ -22,8 +22,11 @@ from core.sparse.keypoint_alignment import align_keypoints
 from core.sparse.loose import drop_faint_frames, drop_loose_ends
 from core.sparse.mapper import mapper_options, open_cache
 from core.stage import Facts, StageResult, StageTask
-from core.video.still import read_mask
-from core.viewgraph import PairTable, read_table
+from core.video.still import read_still
+from core.viewgraph import PairTable, database_of, read_graph
+
+if TYPE_CHECKING:
+    import pycolmap
 
 
 def run(task: StageTask) -> StageResult:
@@ -31,13 +34,10 @@ def run(task: StageTask) -> StageResult:
     graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
     n_search = int(task.facts["frames"]["n_search"])
     settings = task.settings.model
-    if task.piece:
-        model = pycolmap.Reconstruction(task.input("pieces") / str(task.piece) / "model")
-    else:
-        model = pycolmap.Reconstruction(task.input("confirm") / "model")
-    table = read_table(graph / "graph.npz")
+    model = read_model(task.input("pieces" if task.piece else "confirm"), task.piece)
+    table = read_graph(graph)
 
-    def vetoed(candidate: Any) -> bool:
+    def vetoed(candidate: pycolmap.Reconstruction) -> bool:
         return settings.veto and is_wrong(candidate, table, n_frames, n_search)
 
     if settings.register_rest and not task.piece:
@@ -71,22 +71,19 @@ def run(task: StageTask) -> StageResult:
         # Counted here, after the filters: until then mismatches hold what nothing holds.
         model, faint = drop_faint_frames(model)
         loose = sorted(loose + faint)
-    folder = task.out / "model"
-    folder.mkdir()
-    model.write_binary(folder)
-    indices = [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())]
-    (task.out / "registered.json").write_text(json.dumps(indices), encoding="utf-8")
+    write_model(task.out, model)
+    write_registered(task.out, [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())])
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.piece else n_frames
     facts = _facts(model, adjustment, table, offered, n_search)
     return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": loose})
 
 
-def _adjust(task: StageTask, model: Any) -> Adjustment:
+def _adjust(task: StageTask, model: pycolmap.Reconstruction) -> Adjustment:
     names = {model.image(image_id).name for image_id in model.reg_image_ids()}
     return adjust(
         model,
-        open_cache(task.input("graph") / "database.db", names, MIN_MATCHES),
+        open_cache(database_of(task.input("graph")), names, MIN_MATCHES),
         mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
         align=_aligner(task) if task.settings.model.align_keypoints else None,
@@ -100,10 +97,10 @@ def _adjust(task: StageTask, model: Any) -> Adjustment:
 
 def _aligner(task: StageTask) -> Align:
     frames = task.input("frames")
-    still = read_mask(frames / "still.png")
+    still = read_still(frames)
 
     def read(name: str) -> NDArray[np.uint8]:
-        picture = cv2.imread(str(frames / "images" / name), cv2.IMREAD_GRAYSCALE)
+        picture = cv2.imread(str(images_folder(frames) / name), cv2.IMREAD_GRAYSCALE)
         if picture is None:
             raise StageFailed(f"frame {name} cannot be read", where=name)
         return np.asarray(picture, np.uint8)
@@ -111,7 +108,9 @@ def _aligner(task: StageTask) -> Align:
     return lambda model, drop: align_keypoints(model, read, still, drop=drop, threads=task.threads)
 
 
-def _facts(model: Any, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int) -> Facts:
+def _facts(
+    model: pycolmap.Reconstruction, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int
+) -> Facts:
     stats = model_stats(model)
     flags = check_model(model, stats, table, n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:

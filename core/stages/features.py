@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,12 +10,12 @@ import torch
 from numpy.typing import NDArray
 
 from core.annotations.masks import blade_mask
-from core.annotations.placed import load_masks
 from core.features.extract import inside_mask, make_extractor, read_image
 from core.features.io import feature_name, write_features
-from core.roi import Crop
+from core.io.annotations import read_masks
+from core.io.frames import image_path, read_crop, read_frames
 from core.stage import StageResult, StageTask
-from core.video.still import read_mask
+from core.video.still import read_still
 
 
 def run(task: StageTask) -> StageResult:
@@ -27,11 +26,11 @@ def run(task: StageTask) -> StageResult:
     frames = task.input("frames")
     extract = make_extractor(settings, task.threads)
     mask_of = _blade_masks(task, frames) if settings.blade_masks_only else None
-    moving = ~read_mask(frames / "still.png")
+    moving = ~read_still(frames)
     counts = []
     for done, index in enumerate(range(start, end)):
         task.report(done, end - start, f"frame {index}")
-        features = extract(read_image(frames / "images" / f"{index:04d}.jpg"))
+        features = extract(read_image(image_path(frames, index)))
         mask = mask_of(index) if mask_of else None
         features = inside_mask(features, moving if mask is None else moving & mask)
         write_features(task.out / feature_name(index), features)
@@ -48,8 +47,6 @@ def run(task: StageTask) -> StageResult:
 
 def _blade_masks(task: StageTask, frames: Path) -> Callable[[int], NDArray[np.bool_] | None]:
     """Mask of the blades on a frame; None for a frame without annotated blades, which keeps everything."""
-    rows = json.loads((frames / "frames.json").read_text(encoding="utf-8"))
-    source_index = {int(row["index"]): int(row["source_index"]) for row in rows}
-    crop = Crop(**json.loads((frames / "crop.json").read_text(encoding="utf-8")))
-    masks = load_masks(task.input("annotations"))
-    return lambda index: blade_mask(masks.get(source_index[index], ()), crop)
+    used, crop = read_frames(frames), read_crop(frames)
+    masks = read_masks(task.input("annotations"))
+    return lambda index: blade_mask(masks.get(used[index].source_index, ()), crop)

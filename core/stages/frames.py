@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from fractions import Fraction
 
 import numpy as np
 
-from core.annotations.placed import load_detections
 from core.flags import Flag, Severity
-from core.frames.export import export_frames, image_name
+from core.frames.export import export_frames
 from core.frames.sampling import choose_frames, clip_interval
+from core.io.annotations import read_detections
+from core.io.frames import image_path, images_folder, write_frames
 from core.roi import crop_of
+from core.scene.frame import Frame, RunFrames
 from core.stage import StageResult, StageTask
-from core.video.still import find_still, write_mask
+from core.video.still import find_still, write_still
 from core.video.table import FrameTable
 
 
@@ -21,7 +22,7 @@ def run(task: StageTask) -> StageResult:
     """Write `images/`, `frames.json`, `crop.json` and `still.png`; `BadInput` for an impossible interval or region."""
     settings = task.settings
     table = FrameTable.read(task.input("probe"))
-    detections = load_detections(task.input("annotations"))
+    detections = read_detections(task.input("annotations"))
     crop = crop_of(settings.roi, table.info.width, table.info.height)
     interval = clip_interval(table, settings.frames, settings.overrides)
     annotated = {d.source_index for d in detections if d.source_index is not None}
@@ -29,7 +30,7 @@ def run(task: StageTask) -> StageResult:
     chosen = choose_frames(interval, annotated, settings.frames, reach)
     until = max(frame.source_index for frame in chosen) + 1
 
-    images = task.out / "images"
+    images = images_folder(task.out)
     images.mkdir()
     export_frames(
         task.video,
@@ -41,29 +42,24 @@ def run(task: StageTask) -> StageResult:
         max_pixels=task.max_frame_pixels,
         on_frame=lambda done: task.report(done, until, f"frame {done} of {until}"),
     )
-    rows = [
-        {
-            "index": frame.index,
-            "source_index": frame.source_index,
-            "pts": table.rows[frame.source_index].pts,
-            "time_s": table.rows[frame.source_index].time_s,
-            "sha256": table.rows[frame.source_index].sha256,
-            "role": frame.role,
-        }
-        for frame in chosen
-    ]
+    decoded = [table.rows[frame.source_index] for frame in chosen]
+    frames = RunFrames(
+        tuple(
+            Frame(one.index, one.source_index, row.pts, row.time_s, row.sha256, one.role)
+            for one, row in zip(chosen, decoded, strict=True)
+        )
+    )
     shown = sorted(chosen, key=lambda frame: frame.source_index)
-    still = find_still([images / image_name(frame.index) for frame in shown])
+    still = find_still([image_path(task.out, frame.index) for frame in shown])
     flags = list(interval.flags)
     if settings.frames.mask_still and still.share:
         flags.append(Flag("still_pixels_masked", Severity.INFO, still.share, 0.0, f"{still.frames} frames compared"))
-    write_mask(task.out / "still.png", still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
-    (task.out / "frames.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-    (task.out / "crop.json").write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")
+    write_still(task.out, still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
+    write_frames(task.out, frames, crop)
     return StageResult(
         {
             "n_frames": len(chosen),
-            "n_search": sum(frame.role != "added" for frame in chosen),
+            "n_search": frames.n_search,
             "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
             "source_width": crop.source_width,
             "source_height": crop.source_height,

@@ -6,6 +6,7 @@ import shutil
 
 from core.dense.fusion import fuse
 from core.dense.maps import map_paths, open_scene
+from core.io.surface import fused_cloud
 from core.stage import StageResult, StageTask
 
 
@@ -17,6 +18,6 @@ def run(task: StageTask) -> StageResult:
     methods = sorted({str(task.facts.get(key, {}).get("method", "cpu")) for key, _ in chunks})
     workspace = task.out / "workspace"
     task.report(0, 1, "fusing")
-    cloud = fuse(scene, maps, workspace, task.out / "fused.ply", task.settings.fusion)
+    cloud = fuse(scene, maps, workspace, fused_cloud(task.out), task.settings.fusion)
     shutil.rmtree(workspace)
     return StageResult({"n_points": len(cloud.vertices), "method": "+".join(methods)})

@@ -14,10 +14,13 @@ from core.gallery.defects import DefectLine, defect_lines
 from core.gallery.evidence import Evidence, draw_evidence, evidence_of
 from core.gallery.page import gallery_page
 from core.gallery.palette import RGB, label_colors
-from core.json_files import read_json
-from core.mapping.rows import DetectionRow
+from core.io.annotations import read_detections, read_rows
+from core.io.frames import read_frames
+from core.io.sparse import read_poses
+from core.io.surface import defect_mesh
+from core.io.timeline import read_defects, read_events
 from core.render import Renderer
-from core.report.models import join_detections, join_lists
+from core.report.models import join_detections
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
 from core.task_key import stage_of
@@ -33,22 +36,22 @@ def run(task: StageTask) -> StageResult:
     """Write the page, a picture per chosen frame and per best frame, two renderings. Facts: n_images, n_frames."""
     settings = task.settings.gallery
     timelines = [folder for key, folder in sorted(task.inputs.items()) if stage_of(key) == "timeline"]
-    rows = [DetectionRow(**row) for row in join_detections([read_json(f / "detections.json") for f in timelines])]
-    source = {row["id"]: row["source_index"] for row in read_json(task.input("annotations") / "detections.json")}
+    rows = join_detections([read_rows(folder) for folder in timelines])
+    source = {one.id: one.source_index for one in read_detections(task.input("annotations"))}
     frames = group_by_frame(rows, source)
     chosen = choose_frames(frames, settings.max_frames)
     colors = label_colors([row.label for row in rows])
-    records = join_lists([read_json(folder / "defects.json") for folder in timelines])
-    events = join_lists([read_json(folder / "timeline.json") for folder in timelines])
-    used = {row["index"]: row for row in read_json(task.input("frames") / "frames.json")}
+    records = [record for folder in timelines for record in read_defects(folder)]
+    events = [event for folder in timelines for event in read_events(folder)]
+    used = read_frames(task.input("frames"))
     defects = defect_lines(records, events, used)
     rank = {line.number: position for position, line in enumerate(defects)}
-    records = sorted(records, key=lambda record: rank[record["id"]])
+    records = sorted(records, key=lambda record: rank[record.id])
     evidence = evidence_of(records, rows) if task.settings.mapping.method == "surface" else []
     pictures = _pictures(chosen, frames, defects)
     evidence_at: dict[int, list[Evidence]] = {}
     for one in evidence:
-        evidence_at.setdefault(used[one.frame_index]["source_index"], []).append(one)
+        evidence_at.setdefault(used[one.frame_index].source_index, []).append(one)
     _write_frames(task, pictures, colors, evidence_at)
     _write_views(task)
     page = gallery_page(chosen, len(frames), rows, defects, colors, evidence)
@@ -111,9 +114,8 @@ def _write_frames(
 
 def _write_views(task: StageTask) -> None:
     """Render the surface from two sides from which its defects are seen."""
-    mesh = read_mesh(task.input("timeline") / "mesh_defects.ply")
-    with np.load(task.input("timeline") / "cameras.npz") as cameras:
-        poses = cameras["cam_from_world"]
+    mesh = read_mesh(defect_mesh(task.input("timeline")))
+    poses = read_poses(task.input("timeline"))
     renderer = Renderer(mesh, task.threads)
     if renderer.front_share(poses) < 0.5:  # a surface turned inside out would show its grey back
         renderer = Renderer(replace(mesh, faces=np.ascontiguousarray(mesh.faces[:, ::-1])), task.threads)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from core.dense import cuda
 from core.dense.geometric import GeometricFilter
-from core.dense.maps import DenseScene, DepthMap, open_scene, write_map
+from core.dense.maps import DenseScene, DepthMap, map_path, map_paths, open_scene, write_map
 from core.dense.views import DenseView
 from core.stage import StageResult, StageTask
 
@@ -18,14 +18,12 @@ def run(task: StageTask) -> StageResult:
     """Write ``NAME.npz`` of views [start, end); facts n_views, valid_share, method."""
     scene = open_scene(task.input("undistort"))
     views = scene.views[int(task.args["start"]) : int(task.args["end"])]
-    paths = {
-        path.name.removesuffix(".npz"): path for _, folder in task.fan_in("depth") for path in folder.glob("*.npz")
-    }
+    paths = map_paths(folder for _, folder in task.fan_in("depth"))
     method = cuda.resolve_method(task.settings.dense)
     maps = _on_cuda(task, scene, views, paths) if method == "cuda" else _on_cpu(task, scene, views, paths)
     shares = []
     for name, found in maps:
-        write_map(task.out / f"{name}.npz", found)
+        write_map(map_path(task.out, name), found)
         shares.append(found.valid_share)
     share = round(sum(shares) / max(1, len(shares)), 4)
     return StageResult({"n_views": len(shares), "valid_share": share, "method": method})

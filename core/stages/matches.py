@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 
 import torch
 
 from core.features.io import FrameFeatures, feature_files, read_features
+from core.io.frames import read_frames
 from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher, Patience
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
 from core.verification import Verifier, read_camera
-from core.viewgraph import make_table, table_facts, write_table
+from core.viewgraph import make_table, table_facts, write_pairs
 
 
 def run(task: StageTask) -> StageResult:
@@ -21,7 +21,7 @@ def run(task: StageTask) -> StageResult:
     torch.set_num_threads(task.threads)
     pairs = pairs_of_chunk(_all_pairs(task), int(task.args["start"]), int(task.args["end"]))
     table = make_table(pairs, match_all(task, pairs))
-    write_table(task.out / "pairs.npz", table)
+    write_pairs(task.out, table)
     task.report(1, 1)
     return StageResult(dict(table_facts(table)))
 
@@ -32,7 +32,7 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
     Features are read when first needed and let go after their last use.
     """
     settings = task.settings
-    camera = read_camera(task.input("camera") / "camera.json")
+    camera = read_camera(task.input("camera"))
     verifier = Verifier(camera, settings.verification, settings.seed)
     matcher = PairMatcher(settings.matching, verifier, settings.features.method)
     files = feature_files(folder for _, folder in task.fan_in("features"))
@@ -56,7 +56,5 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
 
 
 def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
-    rows = json.loads((task.input("frames") / "frames.json").read_text(encoding="utf-8"))
-    times = [float(row["time_s"]) for row in sorted(rows, key=lambda row: int(row["index"]))]
-    n_search = sum(row["role"] != "added" for row in rows)
-    return match_pairs(times, n_search, task.settings.matching.window)
+    frames = read_frames(task.input("frames"))
+    return match_pairs(frames.times_s, frames.n_search, task.settings.matching.window)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+from core.io.surface import full_mesh, fused_cloud, supported_mesh
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh, write_mesh
 from core.surface.poisson import poisson_mesh, supported_surface
@@ -11,7 +12,7 @@ from core.surface.poisson import poisson_mesh, supported_surface
 
 def run(task: StageTask) -> StageResult:
     """Write ``mesh_poisson.ply``, ``mesh_full.ply`` (both with ``support``) and ``mesh.json``."""
-    cloud_path = task.input("fuse") / "fused.ply"
+    cloud_path = fused_cloud(task.input("fuse"))
     raw_path = task.out / "raw.ply"
     task.report(0, 3, "Poisson surface")
     mesh = poisson_mesh(cloud_path, raw_path, task.settings.mesh)
@@ -20,8 +21,8 @@ def run(task: StageTask) -> StageResult:
     cloud = read_mesh(cloud_path)
     surface = supported_surface(mesh, cloud, task.settings.mesh)
     task.report(2, 3, "writing")
-    write_mesh(task.out / "mesh_full.ply", surface.full, cloud.comments)
-    write_mesh(task.out / "mesh_poisson.ply", surface.kept, cloud.comments)
+    write_mesh(full_mesh(task.out), surface.full, cloud.comments)
+    write_mesh(supported_mesh(task.out), surface.kept, cloud.comments)
     facts = {
         "n_vertices": len(surface.kept.vertices),
         "n_faces": len(surface.kept.faces),

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import pycolmap
-
 from core.checks.model import is_wrong
+from core.io.sparse import read_model, write_model
 from core.sparse.pieces import find_pieces
 from core.stage import StageResult, StageTask
-from core.viewgraph import read_table
+from core.viewgraph import read_graph
 
 
 def run(task: StageTask) -> StageResult:
     """Write ``N/model`` for N = 1, 2, ...: strong models of frames that no earlier one has."""
     graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
-    table = read_table(graph / "graph.npz")
-    first = pycolmap.Reconstruction(task.input("extend") / "model")
+    table = read_graph(graph)
+    first = read_model(task.input("extend"))
     taken = {int(image_id) - 1 for image_id in first.reg_image_ids()}
 
     found = find_pieces(
@@ -29,9 +28,7 @@ def run(task: StageTask) -> StageResult:
         progress=lambda done, total: task.report(done, total, f"piece {done} of {total}"),
     )
     for number, model in enumerate(found, start=1):
-        folder = task.out / str(number) / "model"
-        folder.mkdir(parents=True)
-        model.write_binary(folder)
+        write_model(task.out, model, number)
     return StageResult(
         {
             "n_pieces": len(found),

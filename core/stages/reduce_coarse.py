@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from core.sparse.reduce import case_rows, reduce_cases
+from core.scene.case import CaseKind
+from core.sparse.reduce import candidates_of, reduce_cases
 from core.stage import StageResult, StageTask
 
 
 def run(task: StageTask) -> StageResult:
     """Rank the coarse cases; `NoReconstruction` when none has a model."""
-    rows = case_rows(task.facts, "coarse")
-    task.report(1, 1, f"{len(rows)} cases ranked")
-    return StageResult(reduce_cases(rows, task.settings.model.veto))
+    cases = candidates_of(task.facts, CaseKind.COARSE)
+    task.report(1, 1, f"{len(cases)} cases ranked")
+    return StageResult(reduce_cases(cases, task.settings.model.veto))

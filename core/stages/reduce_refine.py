@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
+from dataclasses import replace
 
-from core.json_files import read_json
-from core.mapping.rows import Detection
-from core.mapping.support import boxes_by_frame, open_model
+from core.io.annotations import read_detections
+from core.io.frames import read_crop, read_frames
+from core.io.sparse import model_folder, read_model
+from core.mapping.support import boxes_by_frame
 from core.mapping.verified import verified_detections
-from core.roi import Crop
-from core.sparse.reduce import Row, case_rows, find_row, reduce_refined
+from core.scene.case import CaseKind
+from core.sparse.reduce import Candidate, candidates_of, find_candidate, reduce_refined
 from core.stage import StageResult, StageTask
 from core.task_key import key_of
 
@@ -20,29 +22,27 @@ def run(task: StageTask) -> StageResult:
 
     The winner is known only here, so its model is copied: later stages need no case by name.
     """
-    best = find_row(case_rows(task.facts, "coarse"), str(task.facts["reduce_coarse"]["best"]))
-    rows = [best, *case_rows(task.facts, "refine")]
+    best = find_candidate(candidates_of(task.facts, CaseKind.COARSE), str(task.facts["reduce_coarse"]["best"]))
+    cases = [best, *candidates_of(task.facts, CaseKind.REFINE)]
     if task.settings.model.prefer_verified:
-        rows = _with_verified(task, rows)
-    facts = reduce_refined(rows[0], rows[1:], task.settings.model.veto)
-    shutil.copytree(task.input(key_of(str(facts["kind"]), part=str(facts["best"]))) / "model", task.out / "model")
-    task.report(1, 1, f"{len(rows) - 1} refined cases ranked")
+        cases = _with_verified(task, cases)
+    facts = reduce_refined(cases[0], cases[1:], task.settings.model.veto)
+    winner = task.input(key_of(str(facts["kind"]), part=str(facts["best"])))
+    shutil.copytree(model_folder(winner), model_folder(task.out))
+    task.report(1, 1, f"{len(cases) - 1} refined cases ranked")
     return StageResult(facts)
 
 
-def _with_verified(task: StageTask, rows: Sequence[Row]) -> list[Row]:
-    """The rows with the detections that each case's model verifies; none without a model."""
+def _with_verified(task: StageTask, cases: Sequence[Candidate]) -> list[Candidate]:
+    """The cases with the detections that each one's model verifies; none without a model."""
     frames = task.input("frames")
-    index = {int(row["source_index"]): int(row["index"]) for row in read_json(frames / "frames.json")}
-    detections = [Detection.from_json(row) for row in read_json(task.input("annotations") / "detections.json")]
-    boxes = boxes_by_frame(detections, (), index, Crop(**read_json(frames / "crop.json")))
-    found: list[Row] = []
-    for number, row in enumerate(rows):
-        task.report(number, len(rows), f"detections of {row['name']}")
+    detections = read_detections(task.input("annotations"))
+    boxes = boxes_by_frame(detections, (), read_frames(frames).index_of_source, read_crop(frames))
+    found: list[Candidate] = []
+    for number, case in enumerate(cases):
+        task.report(number, len(cases), f"detections of {case.name}")
         count = 0
-        if row["status"] == "succeeded":
-            count = verified_detections(
-                open_model(task.input(key_of(str(row["kind"]), part=str(row["name"]))) / "model"), boxes
-            )
-        found.append({**row, "verified_detections": count})
+        if case.row.succeeded:
+            count = verified_detections(read_model(task.input(key_of(case.row.kind, part=case.name))), boxes)
+        found.append(replace(case, verified=count))
     return found

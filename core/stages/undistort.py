@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-import pycolmap
 
 from core.dense.cameras import choose_pinhole
 from core.dense.cuda import resolve_method
+from core.dense.maps import write_mask
 from core.dense.undistort import pinhole_model, undistort_map
 from core.dense.views import plan_views, sparse_views, write_views
 from core.errors import StageFailed
+from core.io.frames import images_folder
+from core.io.sparse import read_model
 from core.settings.groups import DenseSettings
 from core.stage import StageResult, StageTask
 
@@ -25,7 +27,7 @@ def run(task: StageTask) -> StageResult:
     """Write ``images/``, ``mask.png``, ``sparse/`` and ``views.json``; facts n_views, width, height, focal_px."""
     settings = task.settings.dense
     resolve_method(settings)  # a demand that cannot be met is refused before the work, not after
-    model = pycolmap.Reconstruction(str(task.input("extend") / "model"))
+    model = read_model(task.input("extend"))
     views = sparse_views(model)
     plan = plan_views(views, _of_its_share(task))
     if not plan:
@@ -43,14 +45,14 @@ def run(task: StageTask) -> StageResult:
     images.mkdir()
     for done, name in enumerate(needed):
         task.report(done, len(needed), name)
-        image = cv2.imread(str(task.input("frames") / "images" / name), cv2.IMREAD_COLOR)
+        image = cv2.imread(str(images_folder(task.input("frames")) / name), cv2.IMREAD_COLOR)
         if image is None:
             raise StageFailed(f"frame {name} cannot be read", where=name)
         cv2.imwrite(
             str(images / name), mapping.apply(np.asarray(image, np.uint8)), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
         )
-    cv2.imwrite(str(task.out / "mask.png"), mapping.inside.astype("uint8") * 255)
-    write_views(task.out / "views.json", plan)
+    write_mask(task.out, mapping.inside)
+    write_views(task.out, plan)
     return StageResult(
         {
             "n_views": len(plan),

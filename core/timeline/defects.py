@@ -11,17 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.mapping.confidence import confidence
-from core.mapping.rows import DetectionRow, Outcome
+from core.mapping.observations import Observation
 from core.mapping.scene import Scene
-from core.mapping.surface_rules import Observation
 from core.outputs import evidence_name
-from core.roi import Crop
-from core.timeline.events import leading_label
+from core.scene.defect import MODEL_UNIT, Confidence, DefectRecord, EventRow, Extent, Persistence, Sighting
+from core.scene.detection import Outcome, leading_label
+from core.scene.frame import Crop
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.merging import merge_alike
-from core.timeline.rows import EventRow
 from core.timeline.seen import views_of_place, visits
-from core.timeline.visibility import Sighting
 
 F64 = NDArray[np.float64]
 
@@ -229,47 +227,51 @@ def _combined(own: Sequence[Observation], defect: Defect) -> float:
 
 def defect_records(
     found: Found, events: Sequence[EventRow], faces: Sequence[Sequence[int]], model: int
-) -> list[dict[str, Any]]:
-    """Records of ``mapping/defects.json``; `faces` are those of the coloured mesh by defect."""
+) -> list[DefectRecord]:
+    """Records of the defects; `faces` are those of the coloured mesh by defect."""
     records = []
     for number, defect in enumerate(found.defects):
         own = [found.observations[k] for k in defect.members]
         rows = [one.row for one in own]
         detected = {row.frame_index for row in rows}
         records.append(
-            {
-                "id": number,
-                "label": leading_label(rows),
-                "labels": dict(sorted(Counter(row.label for row in rows).items())),
-                "model": model,
-                "centroid": [float(value) for value in defect.place],
-                "centroid_sigma": defect.sigma,
-                "normal": [round(float(value), 6) for value in defect.normal],
-                "extent": _extent(own),
-                "confidence": {"value": _combined(own, defect), "parts": _parts(own, defect)},
-                "persistence": {"k": defect.k, "n": defect.n, "share": defect.k / defect.n},
-                "events": [event.event_id for event in events if event.defect_id == number],
-                "detections": [row.id for row in rows],
-                "approximate_detections": _approximate(found.observations, number),
-                "frames": [sighting.to_dict(sighting.frame_index in detected) for sighting in defect.sightings],
-                "evidence": f"gallery/{evidence_name(number)}",
-                "faces": [int(face) for face in faces[number]],
-                "blade": None,
-            }
+            DefectRecord(
+                id=number,
+                label=leading_label(rows),
+                labels=dict(sorted(Counter(row.label for row in rows).items())),
+                model=model,
+                centroid=_three(defect.place.tolist()),
+                centroid_sigma=defect.sigma,
+                normal=_three([round(float(value), 6) for value in defect.normal]),
+                extent=_extent(own),
+                confidence=Confidence(_combined(own, defect), _parts(own, defect)),
+                persistence=Persistence(defect.k, defect.n),
+                events=tuple(event.event_id for event in events if event.defect_id == number),
+                detections=tuple(row.id for row in rows),
+                approximate_detections=_approximate(found.observations, number),
+                frames=tuple(replace(one, detected=one.frame_index in detected) for one in defect.sightings),
+                evidence=f"gallery/{evidence_name(number)}",
+                faces=tuple(int(face) for face in faces[number]),
+            )
         )
     return records
 
 
-def _approximate(observations: Sequence[Observation], number: int) -> list[int]:
-    return [o.row.id for o in observations if o.row.outcome == Outcome.APPROXIMATE and o.row.defect_id == number]
+def _three(values: Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = values
+    return x, y, z
 
 
-def _extent(own: Sequence[Observation]) -> dict[str, Any]:
+def _approximate(observations: Sequence[Observation], number: int) -> tuple[int, ...]:
+    return tuple(o.row.id for o in observations if o.row.outcome == Outcome.APPROXIMATE and o.row.defect_id == number)
+
+
+def _extent(own: Sequence[Observation]) -> Extent:
     """Diameter: twice the median radius of the patches; sigma is 1.4826 MAD, null for fewer than three."""
     sizes = np.array([2.0 * one.radius for one in own])
     value = float(np.median(sizes))
     sigma = 1.4826 * float(np.median(np.abs(sizes - value))) if len(sizes) >= 3 else None
-    return {"value": value, "unit": "model", "sigma": sigma}
+    return Extent(value, MODEL_UNIT, sigma)
 
 
 def _parts(own: Sequence[Observation], defect: Defect) -> dict[str, Any]:
@@ -282,8 +284,3 @@ def _parts(own: Sequence[Observation], defect: Defect) -> dict[str, Any]:
 
 def _median(values: Sequence[Any]) -> float | None:
     return round(float(np.median(values)), 4) if values else None
-
-
-def final_rows(found: Found) -> list[DetectionRow]:
-    """Rows of the detections, in input order."""
-    return [one.row for one in found.observations]

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.geometry.boxes import box_iou
-from core.mapping.rows import Outcome
-from core.mapping.surface_rules import Observation
+from core.mapping.observations import Observation
+from core.scene.detection import Outcome
 
 F64 = NDArray[np.float64]
 

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.boxes import in_box
+from core.mapping.observations import Observation
 from core.mapping.support import box_in_crop_px
-from core.mapping.surface_rules import Observation
-from core.mapping.views import Views
-from core.roi import Crop
+from core.scene.frame import Crop
+from core.scene.views import Views
 from core.timeline.instances import SAME_BOX_IOU, fused_place, overlap
 
 F64 = NDArray[np.float64]

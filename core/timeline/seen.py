@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 
 from core.mapping.consensus import could_see
 from core.mapping.surface import Surface
-from core.mapping.views import Views
-from core.roi import Crop
-from core.timeline.visibility import MIN_VISIBLE_SHARE, Sighting
+from core.scene.defect import Sighting
+from core.scene.frame import Crop
+from core.scene.views import Views
 
 F64 = NDArray[np.float64]
 
 MAX_SAMPLES = 16
+MIN_VISIBLE_SHARE = 0.5
+"""A view sees a place when at least this share of its sample points is inside the image and not hidden."""
 AWAY_FRAMES = 3
 """A defect that this many registered frames in a row do not show was out of sight;"""
 AWAY_S = 0.5

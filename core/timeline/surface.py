@@ -1,4 +1,4 @@
-"""The defects on the surface: which vertices and faces each one covers, and its sample points."""
+"""The defects on the surface: which vertices and faces each one covers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 I64 = NDArray[np.int64]
-
-MAX_SAMPLES = 64
-"""Sample points of a defect that are tested for visibility."""
 
 
 def defect_of_vertices(detection: I32, defect_of_detection: Mapping[int, int]) -> I32:
@@ -35,20 +31,3 @@ def faces_of_defects(faces: I32, vertex_defect: I32, n_defects: int) -> list[I64
     order = np.argsort(of_face, kind="stable")
     bounds = np.searchsorted(of_face[order], np.arange(n_defects + 1))
     return [order[bounds[k] : bounds[k + 1]] for k in range(n_defects)]
-
-
-def sample_points(support: F64) -> F64:
-    """At most `MAX_SAMPLES` of the support points, evenly picked in their order."""
-    if len(support) <= MAX_SAMPLES:
-        return support
-    sampled: F64 = support[np.linspace(0, len(support) - 1, MAX_SAMPLES).round().astype(int)]
-    return sampled
-
-
-def mean_normal(normals: F64, vertex_defect: I32, weight: NDArray[np.float32], defect: int) -> F64:
-    """(3,) unit normal of a defect's vertices weighted by influence; zero when it covers none."""
-    own = np.flatnonzero(vertex_defect == defect)
-    total: F64 = (normals[own] * weight[own, None]).sum(axis=0)
-    length = float(np.linalg.norm(total))
-    unit: F64 = total / length if length > 0 else np.zeros(3)
-    return unit

@@ -36,6 +36,7 @@ MAX_SHARE = 0.25
 """Nor is more of the picture masked than this: it would be something else than an overlay."""
 REACH_PX = 4
 """Keypoints this near to a still edge see it."""
+_STILL = "still.png"
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,16 @@ def _different(images: Sequence[F32]) -> list[F32]:
         if float(np.abs(image - kept[-1]).mean()) >= DIFFERENT:
             kept.append(image)
     return kept
+
+
+def write_still(folder: Path, mask: Flags) -> None:
+    """Write the mask of still pixels into the result of `frames`."""
+    write_mask(folder / _STILL, mask)
+
+
+def read_still(folder: Path) -> Flags:
+    """(h, w) mask of still pixels, from the result of `frames`."""
+    return read_mask(folder / _STILL)
 
 
 def write_mask(path: Path, mask: Flags) -> None:

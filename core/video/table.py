@@ -13,6 +13,8 @@ from typing import Any
 from core.errors import StageFailed
 from core.geometry.nearest import nearest_index
 
+_INFO = "video.json"
+_TABLE = "table.csv"
 _COLUMNS = ("index", "pts", "time_s", "keyframe", "sha256")
 
 
@@ -72,6 +74,11 @@ class VideoInfo:
         return cls(**row)
 
 
+def read_info(folder: Path) -> VideoInfo:
+    """What is known of the video, from the result of `probe`."""
+    return VideoInfo.from_dict(json.loads((folder / _INFO).read_text(encoding="utf-8")))
+
+
 @dataclass(frozen=True)
 class FrameRow:
     """One decoded frame of the video."""
@@ -117,8 +124,8 @@ class FrameTable:
 
     def write(self, folder: Path) -> None:
         """Write `video.json` and `table.csv`."""
-        (folder / "video.json").write_text(json.dumps(self.info.to_dict(), indent=1) + "\n", encoding="utf-8")
-        with (folder / "table.csv").open("w", newline="", encoding="utf-8") as stream:
+        (folder / _INFO).write_text(json.dumps(self.info.to_dict(), indent=1) + "\n", encoding="utf-8")
+        with (folder / _TABLE).open("w", newline="", encoding="utf-8") as stream:
             writer = csv.writer(stream, lineterminator="\n")
             writer.writerow(_COLUMNS)
             for row in self.rows:
@@ -127,8 +134,8 @@ class FrameTable:
     @classmethod
     def read(cls, folder: Path) -> FrameTable:
         """Read what `write` wrote; `StageFailed` when the two files do not belong together."""
-        info = VideoInfo.from_dict(json.loads((folder / "video.json").read_text(encoding="utf-8")))
-        with (folder / "table.csv").open(newline="", encoding="utf-8") as stream:
+        info = read_info(folder)
+        with (folder / _TABLE).open(newline="", encoding="utf-8") as stream:
             rows = tuple(
                 FrameRow(int(r["index"]), int(r["pts"]), float(r["time_s"]), r["keyframe"] == "1", r["sha256"])
                 for r in csv.DictReader(stream)

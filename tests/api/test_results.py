@@ -18,7 +18,7 @@ from PIL import Image
 
 from api.routes.frames import draw
 from core.report.csv_form import unescaped
-from core.report.rows import CASE_COLUMNS
+from core.scene.case import CASE_COLUMNS
 from store.tables import DETECTIONS, TIMELINE
 from tests.api.conftest import Backend
 from tests.labels import LABELS

@@ -20,8 +20,11 @@ from core.dense.cameras import Pinhole
 from core.dense.maps import DenseScene
 from core.dense.views import DenseView
 from core.geometry.pose import Pose
+from core.io.frames import write_frames
+from core.scene.frame import Crop
 from core.settings import make_settings
 from core.surface.ply import Mesh
+from tests.core.making_rows import run_frames
 
 
 def make_run(out: Path, **folders: Path) -> FinishedRun:
@@ -60,8 +63,7 @@ def test_disk_is_compared_with_the_same_result(tmp_path: Path) -> None:
 
 def test_pairs_are_drawn_once_and_for_all(tmp_path: Path) -> None:
     (tmp_path / "frames").mkdir()
-    rows = [{"index": i, "time_s": i / 12, "role": "both"} for i in range(40)]
-    (tmp_path / "frames" / "frames.json").write_text(json.dumps(rows))
+    write_frames(tmp_path / "frames", run_frames(40, 1 / 12), Crop(0, 0, 160, 128, 160, 128))
     run = make_run(tmp_path, frames=tmp_path / "frames")
     pairs = draw_pairs(run, 30)
     assert pairs == draw_pairs(run, 30)

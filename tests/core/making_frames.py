@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from core.video.still import write_mask
+from core.io.frames import write_frames
+from core.scene.frame import Crop, Frame, Role, RunFrames
+from core.video.still import write_still
 
 SIZE = (200, 160)
 
@@ -26,11 +27,8 @@ def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] |
     for index, (role, time) in enumerate(zip(roles, times, strict=True)):
         left = int(step_px * time)
         cv2.imwrite(str(folder / "images" / f"{index:04d}.jpg"), wall[: SIZE[1], left : left + SIZE[0]])
-        rows.append(
-            {"index": index, "source_index": 2 * index, "pts": index, "time_s": time, "sha256": "", "role": role}
-        )
-    (folder / "frames.json").write_text(json.dumps(rows), encoding="utf-8")
-    crop = {"x0": 10, "y0": 20, "x1": 10 + SIZE[0], "y1": 20 + SIZE[1], "source_width": 250, "source_height": 200}
-    (folder / "crop.json").write_text(json.dumps(crop), encoding="utf-8")
-    write_mask(folder / "still.png", np.zeros((crop["y1"] - crop["y0"], crop["x1"] - crop["x0"]), bool))
+        rows.append(Frame(index, 2 * index, index, time, "", Role(role)))
+    crop = Crop(10, 20, 10 + SIZE[0], 20 + SIZE[1], 250, 200)
+    write_frames(folder, RunFrames(tuple(rows)), crop)
+    write_still(folder, np.zeros((crop.height, crop.width), bool))
     return folder

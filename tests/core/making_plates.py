@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from core.mapping.consensus import looked_at
 from core.mapping.depth_witness import DepthMaps, no_depth_maps
-from core.mapping.rows import Detection
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals
 from core.mapping.support import Observations
 from core.mapping.surface import Surface
-from core.mapping.surface_rules import Times
-from core.mapping.views import Views
-from core.roi import Crop
+from core.scene.detection import Detection
+from core.scene.frame import Crop, RunFrames
+from core.scene.views import Views
 from core.surface.ply import Mesh
+from tests.core.making_rows import run_frames
 
 WIDTH, HEIGHT, FOCAL = 320, 240, 160.0
 NEAR, FAR, STEP = 4.0, 6.0, 0.1
@@ -103,8 +103,8 @@ def scene(
     )
 
 
-def times(count: int = 12, step_s: float = 0.1) -> Times:
-    return Times({i: i for i in range(count)}, {i: step_s * i for i in range(count)})
+def times(count: int = 12, step_s: float = 0.1) -> RunFrames:
+    return run_frames(count, step_s)
 
 
 def no_matches(_index: int) -> list[tuple[int, np.ndarray, np.ndarray]]:

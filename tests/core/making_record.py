@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from core.report.record import RunRecord, RunTables, TaskRecord
+from core.scene.detection import Detection
+from core.scene.frame import Frame, Role, RunFrames
 from core.settings import make_settings
 from core.states import RunState, TaskState
-from core.timeline.clusters import cluster_detections
-from core.timeline.events import event_rows, with_defect_ids
+from core.thesis.grouping import cluster_detections, defect_records, event_rows, with_defect_ids
 from tests.core.making_rows import mapped, unplaced
 
 
@@ -54,39 +57,19 @@ def _tables() -> RunTables:
     ]
     source = [10, 11, 12, 90, 11, None]
     detections = [
-        {
-            "id": r.id,
-            "key": r.key,
-            "time_s": r.time_s,
-            "label": r.label,
-            "score": r.score,
-            "box": [r.box_x1, r.box_y1, r.box_x2, r.box_y2],
-            "polygon": None,
-            "track_id": None,
-            "source_index": s,
-        }
-        for r, s in zip(rows, source, strict=True)
+        Detection(row.id, row.key, row.time_s, row.label, row.score, row.box, source_index=shown)
+        for row, shown in zip(rows, source, strict=True)
     ]
-    frames = [
-        {
-            "index": i,
-            "source_index": 9 + i,
-            "pts": 100 * i,
-            "time_s": 0.9 + 0.1 * i,
-            "sha256": "ab" * 32,
-            "role": "sampled",
-        }
-        for i in range(5)
-    ]
+    frames = RunFrames(tuple(Frame(i, 9 + i, 100 * i, 0.9 + 0.1 * i, "ab" * 32, Role.SAMPLED) for i in range(5)))
     clusters = cluster_detections(rows, 1.0)
-    events = [event.to_dict() for event in event_rows(clusters)]
+    supports = {row.id: np.array([[row.x, row.y, row.z]]) for row in rows if row.x is not None}
     return RunTables(
         detections=detections,
         frames=frames,
         registered=[0, 1, 2, 3],
-        mapped_rows=[row.to_dict() for row in with_defect_ids(rows, clusters)],
-        timeline=events,
-        defects=[{"id": event["defect_id"], "label": event["label"]} for event in events],
+        mapped_rows=with_defect_ids(rows, clusters),
+        timeline=event_rows(clusters),
+        defects=defect_records(clusters, supports, [[] for _ in clusters], [[] for _ in clusters]),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from core.flags import Flag, Severity
-from core.mapping.store import read_observations
+from core.mapping.observations import read_observations
 from core.settings import make_settings
 from core.stage import Facts, StageTask
 from core.stages import map_defects, timeline

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from core.annotations.masks import blade_mask, rasterise
-from core.annotations.model import Mask
 from core.annotations.parse import parse_annotations
-from core.annotations.placed import load_detections, load_masks, place, write_placed
+from core.annotations.placed import place
 from core.annotations.summary import summarise
 from core.errors import BadInput
-from core.roi import Crop
+from core.io.annotations import read_detections, read_looked_at, read_masks, write_annotations
+from core.scene.detection import Mask
+from core.scene.frame import Crop
 from core.video.table import FrameRow, FrameTable, VideoInfo
 
 DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}
@@ -92,9 +93,10 @@ def test_files_give_back_what_was_placed(tmp_path: Path) -> None:
         "0.101": {"masks": [{"label": "blade", "polygon": TRIANGLE}]},
     }
     placed = place(parse_annotations(value), table_of([0, 100, 200]))
-    write_placed(placed, tmp_path)
-    assert tuple(load_detections(tmp_path)) == placed.detections
-    assert load_masks(tmp_path) == placed.masks
+    write_annotations(tmp_path, placed.detections, placed.masks, placed.looked_at)
+    assert tuple(read_detections(tmp_path)) == placed.detections
+    assert read_masks(tmp_path) == placed.masks
+    assert read_looked_at(tmp_path) == list(placed.looked_at)
     assert len(placed.masks[1]) == 2, "two keys on one frame both count"
 
 

@@ -94,5 +94,5 @@ def test_model_keeps_poses_and_its_tracks_project_onto_their_points(undistorted:
     assert len(errors) > 500
     assert max(errors) < 0.01
     names = {image.name for image in model.images.values()}
-    for view in read_views(undistorted.folder / "views.json"):
+    for view in read_views(undistorted.folder):
         assert {view.name, *view.sources} <= names

@@ -78,8 +78,8 @@ def test_depth_range_is_widened_by_a_quarter() -> None:
 
 def test_plan_survives_its_file(tmp_path: Path) -> None:
     plan = plan_views(_row_of_cameras(), make_settings("default", {"dense.views": 5, "dense.sources": 3}).dense)
-    write_views(tmp_path / "views.json", plan)
-    assert read_views(tmp_path / "views.json") == plan
+    write_views(tmp_path, plan)
+    assert read_views(tmp_path) == plan
     assert [view.index for view in plan] == sorted(view.index for view in plan)
     assert all(1 <= len(view.sources) <= 3 and view.name not in view.sources for view in plan)
 

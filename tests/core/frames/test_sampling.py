@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from core.errors import BadInput
 from core.frames.sampling import Interval, choose_frames, clip_interval, sample_uniformly
+from core.scene.frame import Role
 from core.settings import make_settings
 from core.video.table import FrameRow, FrameTable, VideoInfo
 
@@ -152,6 +153,6 @@ def test_an_annotated_frame_far_from_the_samples_gets_neighbours_on_both_sides()
 def test_neighbours_come_after_the_annotated_frames_in_the_budget() -> None:
     settings = make_settings("default", {"frames.count": 5, "frames.max_count": 8}).frames
     chosen = choose_frames(Interval(0, 400), {150, 250}, settings, reach=10)
-    assert [frame.role for frame in chosen].count("annotated") == 2
-    assert [frame.role for frame in chosen].count("neighbour") == 1
+    assert [frame.role for frame in chosen].count(Role.ANNOTATED) == 2
+    assert [frame.role for frame in chosen].count(Role.NEIGHBOUR) == 1
     assert not [f for f in choose_frames(Interval(0, 400), {150}, settings) if f.role == "neighbour"]

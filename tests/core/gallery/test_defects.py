@@ -7,22 +7,24 @@ from typing import Any
 import pytest
 
 from core.gallery.defects import BestFrame, defect_lines
+from core.scene.defect import DefectRecord, EventRow, Extent, Persistence, Sighting
+from tests.core.making_rows import defect, run_frames
 
-FRAMES = {4: {"source_index": 40, "time_s": 2.0}, 7: {"source_index": 70, "time_s": 3.5}}
-VIEWS = [
-    {"frame_index": 7, "quality": 1.0, "detected": False, "x": 0.25, "y": 0.5},
-    {"frame_index": 4, "quality": 0.9, "detected": True, "x": 0.5, "y": 0.5},
-]
-
-
-def record(number: int, extent: dict[str, Any] | None, **more: Any) -> dict[str, Any]:
-    seen = {"k": 3, "n": 5, "share": 0.6}
-    values = {"label": "dent", "centroid": [1, 2, 3], "detections": [0, 1, 2, 3], "frames": VIEWS, "persistence": seen}
-    return {"id": number, "extent": extent, **values, **more}
+FRAMES = run_frames(8, 0.5, every=10)
+VIEWS = (Sighting(7, 1.0, (0.25, 0.5)), Sighting(4, 0.9, (0.5, 0.5), detected=True))
 
 
-def size(value: float | None, sigma: float | None = 0.01, unit: str = "model") -> dict[str, Any]:
-    return {"value": value, "unit": unit, "sigma": sigma}
+def record(number: int, extent: Extent | None, **more: Any) -> DefectRecord:
+    values = {"detections": (0, 1, 2, 3), "frames": VIEWS, "persistence": Persistence(3, 5)}
+    return defect(number, extent=extent, **{**values, **more})
+
+
+def size(value: float | None, sigma: float | None = 0.01, unit: str = "model") -> Extent:
+    return Extent(value, unit, sigma)
+
+
+def visit(defect_id: int, start_s: float, end_s: float) -> EventRow:
+    return EventRow(0, defect_id, "dent", start_s, end_s, 1, 1, 0.0, 0.0, 0.0, 0.0, None)
 
 
 def test_the_largest_comes_first_unknown_sizes_last_and_equal_ones_by_number() -> None:
@@ -41,17 +43,13 @@ def test_the_largest_comes_first_unknown_sizes_last_and_equal_ones_by_number() -
         (size(None), "unknown"),
     ],
 )
-def test_a_size_has_its_sigma_and_unit(extent: dict[str, Any] | None, text: str) -> None:
+def test_a_size_has_its_sigma_and_unit(extent: Extent | None, text: str) -> None:
     (line,) = defect_lines([record(0, extent)], [], FRAMES)
     assert line.size_text == text
 
 
 def test_a_row_spans_all_visits_of_its_defect() -> None:
-    events = [
-        {"defect_id": 1, "start_s": 5.0, "end_s": 6.0},
-        {"defect_id": 0, "start_s": 0.0, "end_s": 9.0},
-        {"defect_id": 1, "start_s": 1.0, "end_s": 2.0},
-    ]
+    events = [visit(1, 5.0, 6.0), visit(0, 0.0, 9.0), visit(1, 1.0, 2.0)]
     (line,) = defect_lines([record(1, None)], events, FRAMES)
     assert (line.start_s, line.end_s, line.visits) == (1.0, 6.0, 2)
     assert (line.n_detections, line.n_frames, line.n_could_show) == (4, 3, 5)
@@ -60,6 +58,6 @@ def test_a_row_spans_all_visits_of_its_defect() -> None:
 def test_the_best_frame_is_the_first_of_the_record() -> None:
     (line,) = defect_lines([record(0, None)], [], FRAMES)
     assert line.best == BestFrame(70, 3.5, (0.25, 0.5))
-    by_thesis = [{"frame_index": 4, "quality": 1.0, "detected": True}]
+    by_thesis = (Sighting(4, 1.0, detected=True),)
     assert defect_lines([record(0, None, frames=by_thesis)], [], FRAMES)[0].best == BestFrame(40, 2.0, None)
-    assert defect_lines([record(0, None, frames=[])], [], FRAMES)[0].best is None
+    assert defect_lines([record(0, None, frames=())], [], FRAMES)[0].best is None

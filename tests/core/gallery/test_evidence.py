@@ -9,20 +9,21 @@ import pytest
 
 from core.gallery.evidence import HEIGHT_PX, draw_evidence, evidence_of
 from core.gallery.page import gallery_page
-from tests.core.making_rows import mapped
+from core.scene.defect import Confidence, Persistence, Sighting
+from tests.core.making_rows import defect, mapped
 
 ROW = replace(mapped(0, (1, 2, 3), frame=7), defect_id=0, box_x1=0.45, box_y1=0.45, box_x2=0.55, box_y2=0.55)
-RECORD = {
-    "id": 0,
-    "label": "dent <1>",
-    "confidence": {"value": 0.914, "parts": {}},
-    "persistence": {"k": 3, "n": 5, "share": 0.6},
-    "frames": [
-        {"frame_index": 4, "quality": 1.0, "detected": False, "x": 0.1, "y": 0.1},
-        {"frame_index": 7, "quality": 0.9, "detected": True, "x": 0.52, "y": 0.5},
-        {"frame_index": 8, "quality": 0.8, "detected": True, "x": 0.6, "y": 0.5},
-    ],
-}
+RECORD = defect(
+    0,
+    "dent <1>",
+    confidence=Confidence(0.914, {}),
+    persistence=Persistence(3, 5),
+    frames=(
+        Sighting(4, 1.0, (0.1, 0.1)),
+        Sighting(7, 0.9, (0.52, 0.5), detected=True),
+        Sighting(8, 0.8, (0.6, 0.5), detected=True),
+    ),
+)
 
 
 def test_the_best_frame_that_detected_it_is_shown() -> None:
@@ -30,7 +31,7 @@ def test_the_best_frame_that_detected_it_is_shown() -> None:
     assert (one.frame_index, one.file_name, one.place) == (7, "defect_000.jpg", (0.52, 0.5))
     assert one.boxes == ((0.45, 0.45, 0.55, 0.55),)
     assert one.caption == "D0 dent <1>, confidence 0.91, in 3 of 5 frames that could show it"
-    unseen = {**RECORD, "frames": RECORD["frames"][:1]}  # type: ignore[index]
+    unseen = replace(RECORD, frames=RECORD.frames[:1])
     assert evidence_of([unseen], [ROW]) == []
 
 

@@ -7,7 +7,6 @@ import hashlib
 import re
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -15,10 +14,10 @@ from core.gallery.boxes import FrameBoxes
 from core.gallery.defects import defect_lines
 from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
-from core.timeline.clusters import cluster_detections
-from core.timeline.events import event_rows, with_defect_ids
+from core.scene.defect import DefectRecord, Sighting
+from core.thesis.grouping import cluster_detections, event_rows, with_defect_ids
 from tests.core.gallery.hostile import NASTY, hostile_page
-from tests.core.making_rows import mapped, unplaced
+from tests.core.making_rows import defect, mapped, run_frames, unplaced
 
 FORMER = Path(__file__).parents[2] / "data" / "gallery" / "hostile.html"
 """The page as version 0.1.0 wrote it, by hand, from the same rows."""
@@ -49,16 +48,9 @@ class Reader(HTMLParser):
         return [attributes for name, attributes in self.elements if name == tag]
 
 
-def record(number: int, label: str, size: float | None = 0.5) -> dict[str, Any]:
-    return {
-        "id": number,
-        "label": label,
-        "centroid": [10.0 * number, 0.0, 0.0],
-        "extent": {"value": size, "unit": "model", "sigma": 0.0625},
-        "persistence": {"k": 1, "n": 2, "share": 0.5},
-        "detections": [number],
-        "frames": [{"frame_index": number, "quality": 1.0, "detected": True, "x": 0.5, "y": 0.5}],
-    }
+def record(number: int, label: str) -> DefectRecord:
+    seen = (Sighting(number, 1.0, (0.5, 0.5), True),)
+    return defect(number, label, centroid=(10.0 * number, 0.0, 0.0), frames=seen)
 
 
 def page(labels: list[str], shown: int | None = None) -> tuple[str, Reader]:
@@ -68,9 +60,9 @@ def page(labels: list[str], shown: int | None = None) -> tuple[str, Reader]:
     rows = with_defect_ids(rows, clusters)
     frames = [FrameBoxes(i, float(i), (rows[i],)) for i in range(len(labels))]
     colors = label_colors([row.label for row in rows])
-    events = [event.to_dict() for event in event_rows(clusters)]
+    events = event_rows(clusters)
     records = [record(number, labels[number]) for number in range(len(clusters))]
-    used = {i: {"source_index": i, "time_s": float(i)} for i in range(len(labels))}
+    used = run_frames(len(labels), 1.0)
     html = gallery_page(frames[:shown], len(frames), rows, defect_lines(records, events, used), colors)
     reader = Reader()
     reader.feed(html)

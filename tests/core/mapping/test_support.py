@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.mapping.support import Observations, box_in_crop_px, overlaps_crop
-from core.roi import Crop
+from core.scene.frame import Crop
 
 CROP = Crop(38, 79, 825, 604, 960, 720)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.mapping.rows import Detection
-from core.mapping.surface_rules import Observation, place_on_surface
+from core.mapping.observations import Observation
+from core.mapping.surface_rules import place_on_surface
+from core.scene.detection import Detection
 from tests.core import making_plates as plates
 from tests.core.making_plates import FAR, NEAR, detection, scene, times
 

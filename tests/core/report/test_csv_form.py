@@ -6,21 +6,21 @@ import csv
 import io
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.io.annotations import read_detections
 from core.json_files import read_json
 from core.report.build import build_report, write_tables
 from core.report.csv_form import csv_line, escaped, read_csv, unescaped
+from core.scene.detection import Detection
 from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import annotations as annotations_stage
 from core.stages import probe
-from core.timeline.clusters import cluster_detections
-from core.timeline.events import event_rows, with_defect_ids
+from core.thesis.grouping import cluster_detections, event_rows, with_defect_ids
 from tests.core.making_record import full_record
 from tests.core.making_rows import mapped
 from tests.labels import LABELS, SAMPLE
@@ -61,7 +61,7 @@ def test_numbers_are_no_text() -> None:
 
 
 @pytest.fixture(scope="module")
-def detections(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
+def detections(tmp_path_factory: pytest.TempPathFactory) -> list[Detection]:
     """What the stages make of the labels."""
     root = tmp_path_factory.mktemp("stages")
     folders: dict[str, Path] = {}
@@ -69,19 +69,18 @@ def detections(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]
         (root / key).mkdir()
         run(StageTask(key, {}, make_settings(), dict(folders), {}, SAMPLE, LABELS, root / key))
         folders[key] = root / key
-    rows: list[dict[str, Any]] = read_json(root / "annotations" / "detections.json")
-    return rows
+    return read_detections(root / "annotations")
 
 
-def test_every_table_of_a_run_holds_the_exact_labels(tmp_path: Path, detections: list[dict[str, Any]]) -> None:
+def test_every_table_of_a_run_holds_the_exact_labels(tmp_path: Path, detections: list[Detection]) -> None:
     full = full_record()
-    rows = [mapped(d["id"], (10.0 * d["id"], 0, 0), d["time_s"], d["label"], frame=d["id"]) for d in detections]
+    rows = [mapped(d.id, (10.0 * d.id, 0, 0), d.time_s, d.label, frame=d.id) for d in detections]
     clusters = cluster_detections(rows, 1.0)
     tables = replace(
         full.tables,
         detections=detections,
-        mapped_rows=[row.to_dict() for row in with_defect_ids(rows, clusters)],
-        timeline=[event.to_dict() for event in event_rows(clusters)],
+        mapped_rows=with_defect_ids(rows, clusters),
+        timeline=event_rows(clusters),
     )
     write_tables(build_report(replace(full, tables=tables)), tmp_path)
     exact = {entry["label"] for key in read_json(LABELS).values() for entry in key.get("detections", [])}

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from core.flags import FLAG_CODES
-from core.mapping.rows import REASONS
 from core.report.build import build_report
+from core.scene.detection import REASONS
 from tests.core.making_record import full_record
 
 DOCS = Path(__file__).parents[3] / "docs"

@@ -10,6 +10,7 @@ import pytest
 from core.report.build import build_report
 from core.report.missing import AFTER_MODEL
 from core.report.record import RunRecord, TaskRecord
+from core.scene.detection import Outcome, Reason
 from core.states import RunState, TaskState
 from tests.core.making_record import failed_record, full_record
 
@@ -75,12 +76,12 @@ def test_an_empty_surface_is_told_whatever_the_state(facts: dict[str, Any]) -> N
 
 def test_a_run_that_placed_nothing_is_told_unless_there_was_nothing_to_place() -> None:
     full = full_record()
-    rows = [{**row, "outcome": "unplaced", "reason": "off_surface"} for row in full.tables.mapped_rows or ()]
+    rows = [replace(row, outcome=Outcome.UNPLACED, reason=Reason.OFF_SURFACE) for row in full.tables.mapped_rows or ()]
     tables = replace(full.tables, mapped_rows=rows, timeline=[], defects=[])
     assert flags_of(replace(full, tables=tables)) == {"nothing_mapped": "5 detections"}
     nothing = replace(tables, detections=[], mapped_rows=[])
     assert build_report(replace(full, tables=nothing)).quality["verdict"] == "ok"
-    outside = replace(tables, detections=[{**row, "source_index": None} for row in full.tables.detections])
+    outside = replace(tables, detections=[replace(row, source_index=None) for row in full.tables.detections])
     assert flags_of(replace(full, tables=outside)) == {}
 
 

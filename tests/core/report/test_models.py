@@ -4,35 +4,36 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from core.flags import Verdict
-from core.json_files import write_json
+from core.io.annotations import write_rows
+from core.io.frames import write_registered
+from core.io.timeline import write_timeline
 from core.report.load import load_tables, served_pieces
-from core.report.models import join_detections, join_lists
+from core.report.models import join_detections
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
+from core.scene.defect import EventRow
+from core.scene.detection import DetectionRow, Outcome
 from core.states import TaskState
-from core.timeline.numbering import Start
-from core.timeline.rows import EventRow
+from core.timeline.grouping import Start
 from tests.core.making_record import full_record
-from tests.core.making_rows import mapped, unplaced
+from tests.core.making_rows import defect, mapped, unplaced
 
 
-def row(number: int, outcome: str, model: int | None = None) -> dict[str, Any]:
-    return {"id": number, "outcome": outcome, "model": model}
+def row(number: int, outcome: str, model: int | None = None) -> DetectionRow:
+    return replace(unplaced(number), outcome=Outcome(outcome), model=model)
 
 
 def test_every_detection_takes_the_model_that_placed_it_best() -> None:
     first = [row(0, "mapped", 0), row(1, "unplaced"), row(2, "approximate", 0), row(3, "approximate", 0)]
     second = [row(0, "approximate", 1), row(1, "approximate", 1), row(2, "mapped", 1), row(3, "approximate", 1)]
-    assert [one["model"] for one in join_detections([first, second])] == [0, 1, 1, 0]
+    assert [one.model for one in join_detections([first, second])] == [0, 1, 1, 0]
     assert join_detections([first]) == first
     assert join_detections([]) == []
-    assert join_lists([[{"id": 0}], [], [{"id": 1}]]) == [{"id": 0}, {"id": 1}]
 
 
 def test_ids_go_on_over_the_models() -> None:
@@ -52,8 +53,8 @@ def test_ids_go_on_over_the_models() -> None:
     ]
     event = EventRow(0, 1, "dent", 0.0, 1.0, 1, 1, 0.0, 0.0, 0.0, 1.0, 0.5)
     assert [(one.event_id, one.defect_id) for one in start.events([event])] == [(7, 6)]
-    record = start.records([{"id": 1, "events": [0, 1], "evidence": "gallery/defect_001.jpg", "label": "dent"}])[0]
-    assert record == {"id": 6, "events": [7, 8], "evidence": "gallery/defect_006.jpg", "label": "dent"}
+    known = replace(defect(1), events=(0, 1), evidence="gallery/defect_001.jpg")
+    assert start.records([known]) == [replace(known, id=6, events=(7, 8), evidence="gallery/defect_006.jpg")]
     assert start.vertices(np.array([-1, 0, 2], np.int32)).tolist() == [-1, 5, 7]
 
 
@@ -64,11 +65,9 @@ def folders(tmp_path: Path, *pieces: int) -> dict[str, Path]:
         for stage in ("extend", "timeline"):
             made[stage + mark] = tmp_path / (stage + mark)
             made[stage + mark].mkdir()
-        write_json(made["extend" + mark] / "registered.json", [number, number + 10])
-        outcome = "mapped" if number else "unplaced"
-        write_json(made["timeline" + mark] / "detections.json", [row(0, outcome, number)])
-        write_json(made["timeline" + mark] / "timeline.json", [{"event_id": number}])
-        write_json(made["timeline" + mark] / "defects.json", [{"id": number, "model": number}])
+        write_registered(made["extend" + mark], [number, number + 10])
+        write_rows(made["timeline" + mark], [row(0, "mapped" if number else "unplaced", number)])
+        write_timeline(made["timeline" + mark], [], [replace(defect(number), model=number)], [])
     return made
 
 
@@ -79,15 +78,15 @@ def test_only_models_that_came_to_their_end_are_served(tmp_path: Path) -> None:
     tables = load_tables(made)
     assert tables.registered == [0, 10]
     assert tables.registered_further == {2: [2, 12]}
-    assert [one["model"] for one in tables.mapped_rows or ()] == [2]
-    assert [one["id"] for one in tables.defects] == [0, 2]
+    assert [one.model for one in tables.mapped_rows or ()] == [2]
+    assert [one.id for one in tables.defects] == [0, 2]
     del made["timeline"]
     assert served_pieces(made) == []
 
 
 def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
     record = full_record()
-    free = [f["index"] for f in record.tables.frames if f["index"] not in record.tables.registered][:1]
+    free = [f.index for f in record.tables.frames if f.index not in record.tables.registered][:1]
     taken = record.tables.registered[0]
     check = {"code": "weak_join", "severity": "warning", "value": 20.0, "threshold": 30.0, "where": "frame 4"}
     facts = {"registered_images": 12, "points3D": 900, "mean_reprojection_error_px": 0.5, "checks": [check]}
@@ -96,7 +95,7 @@ def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
         tasks=[*record.tasks, TaskRecord("extend@1", TaskState.SUCCEEDED, facts=facts)],
         tables=replace(record.tables, registered_further={1: [*free, taken]}),
     )
-    models = {one["index"]: one["model"] for one in frame_rows(record)}
+    models = {one.index: one.model for one in frame_rows(record)}
     assert models[taken] == 0, "a frame belongs to the first model that has it"
     assert [models[index] for index in free] == [1] * len(free)
     flags = collect_flags(record)

@@ -8,9 +8,12 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from core.scene.case import CASE_COLUMNS, CaseRow
 from core.settings import make_settings
 from core.sparse.case_stage import case_checks, trust_facts
 from core.sparse.cases import Case, run_case
+from core.stage import StageTask
+from core.stages import coarse
 from core.viewgraph import read_table, write_table
 from tests.core.sparse.scene import make_scene, view_graph, write_graph
 
@@ -33,6 +36,21 @@ def test_a_bent_model_is_vetoed_and_a_straight_one_is_not(tmp_path: Path) -> Non
     bent = next(check for check in facts["checks"] if check["code"] == "bent_model")
     np.testing.assert_allclose(bent["value"], 7, atol=1)
     assert bent["where"] == "between frames 7 and 8"
+
+
+def test_a_case_says_every_column_that_it_can_know_in_their_order(tmp_path: Path) -> None:
+    scene = make_scene(16, 600)
+    graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
+    args = {"name": "seg_000_0000_0002", "start": 0, "end": 2, "warm_from": ""}
+    task = StageTask("coarse/x", args, make_settings(), {"graph": graph}, {}, Path(), None, tmp_path)
+    facts = coarse.run(task).facts
+    known = [name for name in CASE_COLUMNS if name not in ("seconds", "selected", "vetoed")]
+    assert list(facts) == [*known, "checks", "vetoed"]
+    assert (facts["kind"], facts["status"], facts["reason"]) == ("coarse", "no_model", "too_few_frames")
+    row = CaseRow.from_facts(facts, seconds=1.0, selected=False)
+    assert {name: getattr(row, name) for name in known} == {name: facts[name] for name in known}
+    bad = CaseRow.from_facts({**facts, "reason": ""}, seconds=None, selected=False)
+    assert bad.reason is None
 
 
 def test_without_a_model_nothing_is_vetoed(tmp_path: Path) -> None:

@@ -1,19 +1,23 @@
 from __future__ import annotations
 
-import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from core.errors import NoReconstruction, StageFailed
-from core.roi import Crop
+from core.io.annotations import write_annotations
+from core.io.frames import write_frames
+from core.scene.case import CaseKind
+from core.scene.frame import Crop
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case
-from core.sparse.reduce import reduce_cases, reduce_refined
+from core.sparse.reduce import Candidate, candidates_of, reduce_cases, reduce_refined
 from core.stage import StageTask
 from core.stages import reduce_coarse, reduce_refine
+from tests.core.making_rows import detection, run_frames
 from tests.core.sparse.scene import HEIGHT, WIDTH, make_scene, model_of, view_graph, write_graph
 
 
@@ -29,9 +33,18 @@ def row(name: str, registered: int, points: int, **more: Any) -> dict[str, Any]:
         "reason": reason,
         "registered_images": registered,
         "points3D": points,
+        "frames": 180,
+        "models": int(registered > 0),
+        "mean_reprojection_error_px": 0.0,
+        "median_reprojection_error_px": 0.0,
         "start_mode": "scratch",
         **more,
     }
+
+
+def case(name: str, registered: int, points: int, verified: int | None = None, **more: Any) -> Candidate:
+    (found,) = candidates_of({"coarse/x": row(name, registered, points, **more)}, CaseKind.COARSE)
+    return replace(found, verified=verified)
 
 
 def task(facts: dict[str, Any], out: Path = Path()) -> StageTask:
@@ -45,7 +58,7 @@ def task(facts: dict[str, Any], out: Path = Path()) -> StageTask:
 
 
 def test_images_count_before_points() -> None:
-    facts = reduce_cases([row("seg_000", 179, 90_000), row("seg_001", 180, 10), row("seg_002", 180, 11)])
+    facts = reduce_cases([case("seg_000", 179, 90_000), case("seg_001", 180, 10), case("seg_002", 180, 11)])
     assert (facts["best"], facts["registered_images"], facts["points3D"], facts["kind"]) == (
         "seg_002",
         180,
@@ -56,16 +69,16 @@ def test_images_count_before_points() -> None:
 
 
 def test_of_equal_cases_the_first_name_wins() -> None:
-    assert reduce_cases([row("seg_004", 9, 9), row("seg_001", 9, 9)])["best"] == "seg_001"
+    assert reduce_cases([case("seg_004", 9, 9), case("seg_001", 9, 9)])["best"] == "seg_001"
 
 
 def test_cases_without_model_are_left_out() -> None:
-    facts = reduce_cases([row("seg_000", 0, 0), row("seg_001", 3, 5)])
+    facts = reduce_cases([case("seg_000", 0, 0), case("seg_001", 3, 5)])
     assert [item["name"] for item in facts["ranking"]] == ["seg_001"]
 
 
 def test_no_model_at_all_says_why() -> None:
-    rows = [row("seg_000", 0, 0), row("seg_001", 0, 0), row("seg_002", 0, 0, reason="too_few_matches")]
+    rows = [case("seg_000", 0, 0), case("seg_001", 0, 0), case("seg_002", 0, 0, reason="too_few_matches")]
     with pytest.raises(NoReconstruction) as raised:
         reduce_cases(rows)
     assert raised.value.code == "no_reconstruction"
@@ -74,9 +87,9 @@ def test_no_model_at_all_says_why() -> None:
 
 
 def test_a_refined_case_must_be_strictly_better() -> None:
-    best = row("seg_006", 180, 500)
-    assert reduce_refined(best, [row("refine_000", 180, 500), row("refine_001", 0, 0)])["best"] == "seg_006"
-    facts = reduce_refined(best, [row("refine_000", 180, 501), row("refine_001", 170, 900)])
+    best = case("seg_006", 180, 500)
+    assert reduce_refined(best, [case("refine_000", 180, 500), case("refine_001", 0, 0)])["best"] == "seg_006"
+    facts = reduce_refined(best, [case("refine_000", 180, 501), case("refine_001", 170, 900)])
     assert (facts["best"], facts["kind"]) == ("refine_000", "refine")
     assert [item["name"] for item in facts["ranking"]] == ["refine_000", "seg_006", "refine_001"]
 
@@ -99,38 +112,38 @@ def test_a_winner_without_its_row_is_a_broken_plan() -> None:
         reduce_refine.run(task({"reduce_coarse": {"best": "seg_001"}}))
 
 
-BENT = {"vetoed": True, "checks": [{"code": "bent_model", "severity": "error"}]}
+BENT: dict[str, Any] = {"vetoed": True, "checks": [{"code": "bent_model", "severity": "error"}]}
 
 
 def test_a_vetoed_case_loses_against_any_other() -> None:
-    rows = [row("seg_000", 180, 90_000, **BENT), row("seg_001", 30, 5)]
+    rows = [case("seg_000", 180, 90_000, **BENT), case("seg_001", 30, 5)]
     facts = reduce_cases(rows)
     assert [item["name"] for item in facts["ranking"]] == ["seg_001", "seg_000"]
-    assert reduce_refined(rows[0], [row("refine_000", 20, 4)])["best"] == "refine_000"
-    assert reduce_refined(rows[1], [row("refine_000", 220, 9, **BENT)])["best"] == "seg_001"
+    assert reduce_refined(rows[0], [case("refine_000", 20, 4)])["best"] == "refine_000"
+    assert reduce_refined(rows[1], [case("refine_000", 220, 9, **BENT)])["best"] == "seg_001"
 
 
 def test_when_every_case_is_vetoed_there_is_no_reconstruction() -> None:
-    best = row("seg_000", 180, 9, **BENT)
+    best = case("seg_000", 180, 9, **BENT)
     assert reduce_cases([best])["best"] == "seg_000"  # refinement still gets its chance
     with pytest.raises(NoReconstruction, match="seg_000: bent_model"):
-        reduce_refined(best, [row("refine_000", 170, 9, **BENT)])
+        reduce_refined(best, [case("refine_000", 170, 9, **BENT)])
 
 
 def test_without_the_veto_the_score_alone_counts() -> None:
-    rows = [row("seg_000", 180, 9, **BENT), row("seg_001", 30, 5)]
+    rows = [case("seg_000", 180, 9, **BENT), case("seg_001", 30, 5)]
     assert reduce_cases(rows, veto=False)["best"] == "seg_000"
     assert reduce_refined(rows[0], [], veto=False)["best"] == "seg_000"
 
 
 def test_verified_detections_count_between_trust_and_size() -> None:
-    best = row("seg_000", 180, 9, verified_detections=40)
-    facts = reduce_refined(best, [row("refine_000", 220, 90, verified_detections=39)])
+    best = case("seg_000", 180, 9, verified=40)
+    facts = reduce_refined(best, [case("refine_000", 220, 90, verified=39)])
     assert [item["name"] for item in facts["ranking"]] == ["seg_000", "refine_000"]
     assert facts["ranking"][0]["verified_detections"] == 40
-    assert reduce_refined(best, [row("refine_000", 170, 8, verified_detections=41)])["best"] == "refine_000"
-    assert reduce_refined(best, [row("refine_000", 180, 10, verified_detections=40)])["best"] == "refine_000"
-    bent = row("refine_000", 220, 90, verified_detections=90, **BENT)
+    assert reduce_refined(best, [case("refine_000", 170, 8, verified=41)])["best"] == "refine_000"
+    assert reduce_refined(best, [case("refine_000", 180, 10, verified=40)])["best"] == "refine_000"
+    bent = case("refine_000", 220, 90, verified=90, **BENT)
     assert reduce_refined(best, [bent])["best"] == "seg_000"
 
 
@@ -146,15 +159,11 @@ def test_the_stage_counts_the_detections_of_every_model(tmp_path: Path) -> None:
         model.write_binary(inputs[key] / "model")
         facts[key] = row(key.split("/")[1], model.num_reg_images(), model.num_points3D())
     crop = Crop(0, 0, WIDTH, HEIGHT, WIDTH, HEIGHT)
-    box = {"id": 0, "key": "1.7", "time_s": 1.7, "label": "dent", "box": [0.2, 0.2, 0.8, 0.8], "source_index": 34}
-    for name, value in (
-        ("frames/crop.json", crop.to_dict()),
-        ("frames/frames.json", [{"index": i, "source_index": 2 * i} for i in range(20)]),
-        ("annotations/detections.json", [box]),
-    ):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(json.dumps(value))
-        inputs[name.split("/")[0]] = (tmp_path / name).parent
+    for name in ("frames", "annotations"):
+        inputs[name] = tmp_path / name
+        inputs[name].mkdir()
+    write_frames(inputs["frames"], run_frames(20, 0.05, every=2), crop)
+    write_annotations(inputs["annotations"], [detection(0, 1.7, (0.2, 0.2, 0.8, 0.8), 34)], {}, [34])
     for prefer, winner in ((True, "refine_000"), (False, "seg_000")):
         out = tmp_path / str(prefer)
         settings = make_settings("default", {"model.prefer_verified": prefer})

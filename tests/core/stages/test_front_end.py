@@ -39,7 +39,7 @@ def _task(
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with every result: 5 search frames, one added between frames 1 and 2, two chunks."""
     root = tmp_path_factory.mktemp("front")
-    frames_folder(root / "frames", ["search"] * 5 + ["added"], [0, 1, 2, 3, 4, 1.5])
+    frames_folder(root / "frames", ["sampled"] * 5 + ["added"], [0, 1, 2, 3, 4, 1.5])
     (root / "camera").mkdir()
     camera = {"model": "OPENCV_FISHEYE", "width": SIZE[0], "height": SIZE[1], "params": [150, 150, 100, 80, 0, 0, 0, 0]}
     (root / "camera" / "camera.json").write_text(json.dumps(camera))

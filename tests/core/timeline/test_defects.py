@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.mapping.rows import Detection
-from core.mapping.surface_rules import Observation, place_on_surface
+from core.mapping.observations import Observation
+from core.mapping.surface_rules import place_on_surface
+from core.scene.detection import Detection
 from core.timeline.defects import Found, defect_records, event_rows, find_defects
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.seen import views_of_place, visits
@@ -164,8 +165,7 @@ def test_events_and_records_agree() -> None:
     found = found_in(in_turn([A, B]))
     events = event_rows(found, times().time_of_index)
     assert [(event.event_id, event.defect_id, event.n_frames) for event in events] == [(0, 0, 10), (1, 1, 10)]
-    records = defect_records(found, events, [[1, 2], [3]], 0)
-    first = records[0]
+    first = defect_records(found, events, [[1, 2], [3]], 0)[0].to_dict()
     assert first["persistence"] == {"k": 10, "n": 10, "share": 1.0}
     assert first["detections"] == list(range(0, 20, 2))
     assert first["faces"] == [1, 2]
@@ -186,7 +186,7 @@ def test_a_place_that_a_view_cannot_show_has_no_pixel() -> None:
     behind = np.array([0.0, 0.0, -5.0])
     seen = views_of_place(points, facing, made.views, made.surface, made.tolerance, behind, made.crop)
     assert len(seen) == len(FRAMES)
-    assert all(one.at is None and "x" not in one.to_dict(True) for one in seen)
+    assert all(one.at is None and "x" not in one.to_dict() for one in seen)
     shown = views_of_place(points, facing, made.views, made.surface, made.tolerance, np.array(A), made.crop)
     assert all(one.at is not None and 0 < one.at[0] < 1 for one in shown)
 
@@ -201,7 +201,7 @@ def test_estimates_join_a_defect_and_make_none() -> None:
         ("approximate", None),
     ]
     records = defect_records(found, event_rows(found, times().time_of_index), [[]], 0)
-    assert records[0]["approximate_detections"] == [8]
+    assert records[0].approximate_detections == (8,)
 
 
 def test_the_unit_changes_nothing_but_the_numbers() -> None:

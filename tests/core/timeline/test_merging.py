@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.mapping.surface_rules import Observation, place_on_surface
+from core.mapping.observations import Observation
+from core.mapping.surface_rules import place_on_surface
 from core.timeline.merging import merge_alike
 from tests.core import making_plates as plates
 from tests.core.making_plates import CROP, NEAR, detection, scene, times, views

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.mapping.rows import DETECTION_COLUMNS, REASONS, outcome_counts, rows_without_model, unplaced_row
+from core.scene.detection import DETECTION_COLUMNS, REASONS, Reason, outcome_counts, rows_without_model, unplaced_row
 from tests.core.making_rows import detection, mapped, unplaced
 
 CONTRACT = (
@@ -18,7 +18,7 @@ def test_columns_are_the_contract() -> None:
 
 def test_an_unknown_reason_is_refused() -> None:
     with pytest.raises(ValueError, match="bad luck"):
-        unplaced_row(detection(), "bad luck")
+        unplaced_row(detection(), Reason("bad luck"))
 
 
 def test_all_reasons_of_the_contract_are_known() -> None:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from core.mapping.rows import DetectionRow
-from core.timeline.clusters import cluster_detections, cluster_radius
+from core.scene.detection import DetectionRow
+from core.thesis.grouping import cluster_detections, cluster_radius
 from tests.core.making_rows import mapped, unplaced
 
 

@@ -1,16 +1,19 @@
-"""All registered views of a model at once: rays of pixels, projections of points."""
+"""The posed views of a model, all at once: rays of pixels, projections of points."""
 
 from __future__ import annotations
 
 import copy
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.boxes import in_box
 from core.geometry.pose import camera_centers
+
+if TYPE_CHECKING:  # whoever loads it for real has to load OpenCV first
+    import pycolmap
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -26,8 +29,16 @@ class Views:
     """(f, 3, 3) cam_from_world."""
     t: F64
     """(f, 3)"""
-    camera: Any
-    """pycolmap.Camera; its size is that of the exported frames."""
+    camera: pycolmap.Camera
+    """Its size is that of the exported frames."""
+
+    def __len__(self) -> int:
+        return len(self.frame_index)
+
+    @property
+    def image_ids(self) -> list[int]:
+        """COLMAP's ids of the images: frame index + 1."""
+        return [int(index) + 1 for index in self.frame_index]
 
     @property
     def centers(self) -> F64:
@@ -63,8 +74,8 @@ class Views:
         return xy.reshape(*shape, 2), (inside & before).reshape(shape)
 
 
-def views_of(model: Any) -> Views:
-    """Views of a pycolmap.Reconstruction with one camera; image id = frame index + 1."""
+def views_of(model: pycolmap.Reconstruction) -> Views:
+    """Views of a model with one camera; image id = frame index + 1."""
     ids = sorted(model.reg_image_ids())
     poses = np.array([model.image(i).cam_from_world().matrix() for i in ids], np.float64).reshape(-1, 3, 4)
     camera = copy.deepcopy(next(iter(model.cameras.values())))  # a camera that belongs to a model is freed with it

@@ -61,6 +61,11 @@ def _column(name: str, kind: Any, meaning: str) -> Column:
 
 
 def _docstrings(declared: type[Any]) -> dict[str, str]:
+    """The texts below the fields of a class and of those that it extends."""
+    return {name: text for kind in reversed(declared.__mro__[:-1]) for name, text in _own_docstrings(kind).items()}
+
+
+def _own_docstrings(declared: type[Any]) -> dict[str, str]:
     """The texts below the fields of a class; Python keeps none of them, so they are read from its source."""
     (tree,) = ast.parse(textwrap.dedent(inspect.getsource(declared))).body
     assert isinstance(tree, ast.ClassDef)  # the source of a class is one

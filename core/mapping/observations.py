@@ -1,37 +1,61 @@
-"""Observations on disk, between placing detections and telling defects apart."""
+"""A detection after placement, and its files between placing detections and telling defects apart."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.io.annotations import read_rows, write_rows
 from core.json_files import read_json, write_json
 from core.mapping.confidence import Parts
-from core.mapping.rows import DetectionRow, Outcome
-from core.mapping.surface_rules import Observation
+from core.scene.detection import DetectionRow, Outcome
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
+_PARTS = "parts.json"
+_OBSERVATIONS = "observations.npz"
 MAX_POINTS = 64
 """Surface points kept of an observation: enough for its extent and its colour."""
 
 
+@dataclass(frozen=True)
+class Observation:
+    """A detection after placement: its row, and what later steps need of its surface."""
+
+    row: DetectionRow
+    points: F64
+    """(n, 3) visible surface under it; empty unless it was cast."""
+    normal: F64
+    """(3,) unit, towards the camera; zero when unknown."""
+    radius: float
+    """Of the patch, scene units."""
+    sigma: float | None
+    """Standard deviation of the place, scene units."""
+    parts: Parts | None
+    point_ids: I64
+    """Sparse points that support it."""
+    sparse: F64
+    """(n, 3) of them."""
+    track_id: str | None = None
+
+
 def write_observations(folder: Path, observations: Sequence[Observation]) -> None:
     """Write `detections.json` (the rows), `parts.json` and `observations.npz`."""
-    write_json(folder / "detections.json", [one.row.to_dict() for one in observations])
+    write_rows(folder, [one.row for one in observations])
     rows = []
     for one in observations:
         parts = None if one.parts is None else {**asdict(one.parts), "lead": _finite(one.parts.lead)}
         rows.append({"id": one.row.id, "sigma": one.sigma, "track_id": one.track_id, "parts": parts})
-    write_json(folder / "parts.json", rows)
+    write_json(folder / _PARTS, rows)
     kept = [_thinned(one.points) for one in observations]
     np.savez(
-        folder / "observations.npz",
+        folder / _OBSERVATIONS,
         offsets=np.cumsum([0, *(len(points) for points in kept)]).astype(np.int64),
         points=np.concatenate([np.zeros((0, 3)), *kept]),
         normal=np.array([one.normal for one in observations], np.float64).reshape(-1, 3),
@@ -41,9 +65,9 @@ def write_observations(folder: Path, observations: Sequence[Observation]) -> Non
 
 def read_observations(folder: Path) -> list[Observation]:
     """What `write_observations` wrote, in input order; without the sparse points."""
-    rows = [DetectionRow(**row) for row in read_json(folder / "detections.json")]
-    more = read_json(folder / "parts.json")
-    with np.load(folder / "observations.npz") as data:
+    rows = read_rows(folder)
+    more = read_json(folder / _PARTS)
+    with np.load(folder / _OBSERVATIONS) as data:
         offsets, points, normal, radius = (data[name] for name in ("offsets", "points", "normal", "radius"))
     found = []
     for k, (row, extra) in enumerate(zip(rows, more, strict=True)):

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from core.mapping.rows import Detection
 from core.mapping.support import Observations, SparseModel
-from core.mapping.thesis import FrameTimes, Placement, match_frames, place_detections
-from core.roi import Crop
+from core.scene.detection import Detection
+from core.scene.frame import Crop, RunFrames
 from core.settings import make_settings
 from core.settings.groups import MappingSettings
-from tests.core.making_rows import detection
+from core.thesis.placing import Placement, match_frames, place_detections
+from tests.core.making_rows import detection, run_frames
 
 CROP = Crop(100, 100, 900, 700, 1000, 800)
 PTS = make_settings("default").mapping
 THESIS = make_settings("thesis").mapping
 # Ten frames, one every 0.2 s, source frames 0, 5, 10 ...; registered are 3, 4 and 8.
-ROWS = [{"index": i, "source_index": 5 * i, "time_s": 0.2 * i} for i in range(10)]
-
-
-def frames(rule: str = "pts", rate: str = "25/1") -> FrameTimes:
-    return FrameTimes.from_rows(ROWS, [3, 4, 8], rule, rate)
+FRAMES, REGISTERED = run_frames(10, 0.2, every=5), (3, 4, 8)
 
 
 def model(indices: Sequence[int]) -> SparseModel:
@@ -34,7 +32,8 @@ def model(indices: Sequence[int]) -> SparseModel:
 
 
 def place(found: Detection, settings: MappingSettings = PTS) -> Placement:
-    return place_detections([found], frames(settings.time_rule), CROP, settings, model)[0]
+    frames = FRAMES if settings.time_rule == "pts" else FRAMES.timed_by_rate(Fraction(25))
+    return place_detections([found], frames, REGISTERED, CROP, settings, model)[0]
 
 
 def test_the_place_is_the_centroid_of_the_points_in_the_box() -> None:
@@ -70,31 +69,29 @@ def test_the_thesis_says_only_that_no_view_is_near() -> None:
 
 
 def test_an_image_exactly_at_the_tolerance_is_too_far() -> None:
-    table = FrameTimes.from_rows([{"index": 0, "source_index": 0, "time_s": 0.5}], [0], "pts", "25/1")
+    frame = RunFrames((replace(FRAMES[0], time_s=0.5),))
     near, far = detection(0, 0.75), detection(1, 1.0)
-    assert match_frames([near, far], table, 0.5) == {0: 0}
+    assert match_frames([near, far], frame, [0], 0.5) == {0: 0}
 
 
 def test_the_nearest_registered_image_wins_and_the_earlier_of_equals() -> None:
     wanted = [detection(0, 0.69), detection(1, 0.71), detection(2, 0.75), detection(3, 1.55)]
-    assert match_frames(wanted, frames(), 0.4) == {0: 3, 1: 4, 2: 4, 3: 8}
-    halfway = FrameTimes.from_rows(ROWS, [0, 1], "average_rate", "10/1")
-    assert match_frames([detection(0, 0.25)], halfway, 0.4) == {0: 0}
+    assert match_frames(wanted, FRAMES, REGISTERED, 0.4) == {0: 3, 1: 4, 2: 4, 3: 8}
+    halfway = FRAMES.timed_by_rate(Fraction(10))
+    assert match_frames([detection(0, 0.25)], halfway, [0, 1], 0.4) == {0: 0}
 
 
 def test_average_rate_is_index_over_rate_not_presentation_time() -> None:
-    table = frames("average_rate", "30000/1001")
-    assert table.time_s[4] == pytest.approx(20 * 1001 / 30000)
+    assert FRAMES.timed_by_rate(Fraction(30000, 1001))[4].time_s == pytest.approx(20 * 1001 / 30000)
 
 
 def test_every_detection_has_one_placement_in_input_order() -> None:
     asked = [detection(i, t, source_index=s) for i, (t, s) in enumerate([(1.6, 40), (50.0, None), (0.6, 15)])]
-    placed = place_detections(asked, frames(), CROP, PTS, model)
+    placed = place_detections(asked, FRAMES, REGISTERED, CROP, PTS, model)
     assert [p.row.id for p in placed] == [0, 1, 2]
     assert [p.row.outcome for p in placed] == ["mapped", "unplaced", "mapped"]
 
 
 def test_without_registered_images_nothing_is_read() -> None:
-    table = FrameTimes.from_rows(ROWS, [], "pts", "25/1")
-    placed = place_detections([detection(0, 0.6, source_index=15)], table, CROP, PTS, model)
+    placed = place_detections([detection(0, 0.6, source_index=15)], FRAMES, [], CROP, PTS, model)
     assert placed[0].row.reason == "frame_not_registered"

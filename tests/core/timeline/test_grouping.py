@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.timeline.numbering import Start
-from core.timeline.rows import EventRow
-from tests.core.making_rows import mapped, unplaced
+from core.scene.defect import EventRow
+from core.timeline.grouping import Start
+from tests.core.making_rows import defect, mapped, unplaced
 
 FACTS = {
     "timeline": {"n_defects": 3, "n_events": 5},
@@ -34,7 +34,6 @@ def test_every_file_counts_on_from_there() -> None:
     assert [row.defect_id for row in start.rows(rows)] == [3, 5, None]
     event = EventRow(1, 0, "dent", 0.0, 1.0, 2, 2, 0.0, 0.0, 0.0, 1.0, None)
     assert start.events([event]) == [replace(event, event_id=6, defect_id=3)]
-    record = {"id": 1, "events": [0, 2], "label": "dent", "evidence": "gallery/defect_001.jpg"}
-    changed = {"id": 4, "events": [5, 7], "label": "dent", "evidence": "gallery/defect_004.jpg"}
-    assert start.records([record]) == [changed]
+    record = defect(1, events=(0, 2), evidence="gallery/defect_001.jpg")
+    assert start.records([record]) == [replace(record, id=4, events=(5, 7), evidence="gallery/defect_004.jpg")]
     assert start.vertices(np.array([-1, 0, 1], np.int32)).tolist() == [-1, 3, 4]

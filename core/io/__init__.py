@@ -1,0 +1,1 @@
+"""The files between stages: each has one module here that reads and writes it and alone knows its name."""

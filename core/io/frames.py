@@ -1,0 +1,52 @@
+"""The result of `frames` (images, ``frames.json``, ``crop.json``), and ``registered.json`` of `extend`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from core.json_files import read_json
+from core.scene.frame import Crop, RunFrames, frames_of, image_name
+
+_FRAMES = "frames.json"
+_CROP = "crop.json"
+_IMAGES = "images"
+_REGISTERED = "registered.json"
+
+
+def write_frames(folder: Path, frames: RunFrames, crop: Crop) -> None:
+    """Write the frame table of the run and the part of the frames that was exported."""
+    rows = [frame.to_dict() for frame in frames]
+    (folder / _FRAMES).write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    (folder / _CROP).write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")
+
+
+def read_frames(folder: Path) -> RunFrames:
+    """The frame table of the run."""
+    return frames_of(read_json(folder / _FRAMES))
+
+
+def read_crop(folder: Path) -> Crop:
+    """The part of every frame that was exported."""
+    return Crop(**read_json(folder / _CROP))
+
+
+def images_folder(folder: Path) -> Path:
+    """Folder of the exported images."""
+    return folder / _IMAGES
+
+
+def image_path(folder: Path, index: int) -> Path:
+    """Exported image of a frame."""
+    return images_folder(folder) / image_name(index)
+
+
+def write_registered(folder: Path, indices: Sequence[int]) -> None:
+    """Write which frames the final model has, in the result of `extend`."""
+    (folder / _REGISTERED).write_text(json.dumps(list(indices)), encoding="utf-8")
+
+
+def read_registered(folder: Path) -> list[int]:
+    """Indices of the frames that the final model has, from the result of `extend`."""
+    return [int(index) for index in read_json(folder / _REGISTERED)]

@@ -1,0 +1,142 @@
+"""The thesis's tables 3.2 to 3.5, filled with the numbers of this run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from core.outputs import FUSED, SURFACE
+from core.scene.case import CaseKind, CaseRow
+from core.scene.detection import DetectionRow
+from core.settings import Settings
+from core.stage import Facts
+from core.thesis.search import best_case, refinement_gain, spread
+
+FactsOf = Callable[[str], Facts]
+"""Facts of a finished task by its key; empty for one that is not finished."""
+
+
+def thesis_tables(
+    facts: FactsOf,
+    settings: Settings,
+    selected: str,
+    cases: Sequence[CaseRow],
+    detections: Sequence[DetectionRow],
+    funnel: Mapping[str, int | None],
+    support: Mapping[str, float | None],
+    n_events: int,
+) -> dict[str, list[dict[str, object]]]:
+    """All tables by their number.
+
+    Args:
+        facts: of the run's tasks.
+        settings: of the run.
+        selected: name of the case whose model went on; empty without one.
+        cases: that ended.
+        detections: all rows.
+        funnel: detections left after each step.
+        support: counts of sparse support points.
+        n_events: of the timeline.
+    """
+    return {
+        "3.2": table_3_2(facts, selected),
+        "3.3": table_3_3(selected, cases),
+        "3.4": table_3_4(facts, detections, funnel, support, n_events),
+        "3.5": table_3_5(facts, settings, selected, cases),
+    }
+
+
+def table_3_2(facts: FactsOf, selected: str) -> list[dict[str, object]]:
+    """Selected reconstruction and dense surface; null = not reached."""
+    sparse, fused, mesh = facts("extend"), facts("fuse"), facts("mesh")
+    values = (
+        ("selected_case", selected or None),
+        ("registered_images", sparse.get("registered_images")),
+        ("points3D", sparse.get("points3D")),
+        ("mean_reprojection_error_px", sparse.get("mean_reprojection_error_px")),
+        ("median_reprojection_error_px", sparse.get("median_reprojection_error_px")),
+        ("fused_points", fused.get("n_points")),
+        ("mesh_vertices", mesh.get("n_vertices")),
+        ("mesh_faces", mesh.get("n_faces")),
+        ("fused_point_cloud", FUSED if fused else None),
+        ("mesh", SURFACE if mesh else None),
+    )
+    return [{"quantity": name, "value": value} for name, value in values]
+
+
+def table_3_3(selected: str, cases: Sequence[CaseRow]) -> list[dict[str, object]]:
+    """The selected case beside the strongest coarse one, the two weakest and one without a model."""
+    picked: dict[str, str] = {}
+    if (coarse := best_case(cases, CaseKind.COARSE)) is not None:
+        picked[coarse.name] = "strongest coarse case"
+    if selected:
+        picked[selected] = "selected" if selected not in picked else "selected, strongest coarse case"
+    with_model = sorted((row for row in cases if row.succeeded), key=lambda row: row.score)
+    for row in with_model[:2]:
+        picked.setdefault(row.name, "weak alternative")
+    for row in [row for row in cases if not row.succeeded][:1]:
+        picked.setdefault(row.name, "no model")
+    by_name = {row.name: row for row in cases}
+    return [
+        {
+            "case": name,
+            "type": by_name[name].kind,
+            "registered_images": by_name[name].registered_images,
+            "points3D": by_name[name].points3D,
+            "role": role,
+        }
+        for name, role in picked.items()
+        if name in by_name
+    ]
+
+
+def table_3_4(
+    facts: FactsOf,
+    rows: Sequence[DetectionRow],
+    funnel: Mapping[str, int | None],
+    support: Mapping[str, float | None],
+    n_events: int,
+) -> list[dict[str, object]]:
+    """The transfer from annotations to geometry, step by step."""
+    matched = int(funnel["registered"] or 0)
+    with_support = sum(row.support_points > 0 for row in rows)
+    values = (
+        ("timestamp_entries", facts("annotations").get("n_keys")),
+        ("timestamps_with_detections", len({row.key for row in rows})),
+        ("input_detections", len(rows)),
+        ("time_matched_detections", matched),
+        ("rejected_by_temporal_mismatch", len(rows) - matched),
+        ("detections_with_3d_support", with_support),
+        ("detections_without_3d_support", matched - with_support),
+        ("unique_support_points", support["unique"]),
+        ("timeline_clusters", n_events),
+    )
+    return [{"stage": name, "count": value} for name, value in values]
+
+
+def table_3_5(facts: FactsOf, settings: Settings, selected: str, cases: Sequence[CaseRow]) -> list[dict[str, object]]:
+    """The design choices and the evidence this run gives for each."""
+    frames, sparse = facts("frames"), facts("extend")
+    coarse, gain = spread(cases, CaseKind.COARSE), refinement_gain(cases)
+    preprocessing = {
+        "frames": frames.get("n_search"),
+        "clip_start_s": settings.frames.clip_start_s,
+        "clip_end_s": settings.frames.clip_end_s,
+        "roi": [settings.roi.x0, settings.roi.y0, settings.roi.x1, settings.roi.y1],
+        "crop_px": frames.get("crop"),
+    }
+    consistency = {
+        "selected_case": selected or None,
+        "models": 1 if sparse else 0,
+        "registered_images_of_case": _images_of(cases, selected),
+        "registered_images_of_model": sparse.get("registered_images"),
+    }
+    return [
+        {"choice": "segmented_reconstruction", "evidence": coarse},
+        {"choice": "refinement_around_best_segment", "evidence": gain},
+        {"choice": "fixed_preprocessing", "evidence": preprocessing},
+        {"choice": "selected_case_consistency", "evidence": consistency},
+    ]
+
+
+def _images_of(cases: Sequence[CaseRow], name: str) -> int | None:
+    return next((row.registered_images for row in cases if row.name == name), None)

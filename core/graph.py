@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 from core.settings import Settings
 from core.stage import Facts
+from core.states import Queue
 from core.task_key import chunk_key, key_of, stage_of
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
@@ -30,7 +31,7 @@ class StageSpec:
     """Groups or single dotted options that the stage reads: exactly these enter its fingerprint."""
     fan_out: bool = False
     """Many tasks of this stage run side by side, so each uses one thread."""
-    queue: Literal["cpu", "gpu"] = "cpu"
+    queue: Queue = Queue.CPU
     weight: float = 1.0
     """Rough share of the run's time, for progress before anything is learnt: 10 s of two cores each."""
     reads_video: bool = False
@@ -99,8 +100,8 @@ STAGES: dict[str, StageSpec] = {
         _spec("extend", "mapper", "model", "verification", "seed", "compute.threads", version=12, weight=18),
         _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
         _spec("undistort", "dense", "compute.chunk_views", weight=1),
-        _spec("depth", "dense", "seed", version=2, fan_out=True, queue="gpu", weight=24),
-        _spec("geometric", "dense", "seed", version=2, fan_out=True, queue="gpu", weight=21),
+        _spec("depth", "dense", "seed", version=2, fan_out=True, queue=Queue.GPU, weight=24),
+        _spec("geometric", "dense", "seed", version=2, fan_out=True, queue=Queue.GPU, weight=21),
         _spec("fuse", "fusion", "dense", weight=3),
         _spec("mesh", "mesh", weight=2),
         _spec("map_defects", "mapping", version=10, weight=0.6),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
+from enum import StrEnum
 from typing import Any
 
 from sqlalchemy import BigInteger, ForeignKey, Index, String, UniqueConstraint
@@ -10,7 +11,7 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from core.mapping import rows as declared_detections
 from core.report import rows as declared_cases
-from core.states import AttemptOutcome, InspectionState, TaskState
+from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 from core.timeline import rows as declared_events
 
 # Whoever takes the base class from here has all tables in its metadata.
@@ -23,6 +24,15 @@ ACTIVE_INSPECTION = (*LEASABLE, InspectionState.CANCELLING)
 """States of an inspection that is not over."""
 OVER_TASK = (TaskState.SUCCEEDED, TaskState.FAILED, TaskState.SKIPPED, TaskState.CANCELLED)
 """States of a task that will not change by itself."""
+
+
+class ReservationKind(StrEnum):
+    """What a reservation holds."""
+
+    INSPECTION = "inspection"
+    """A place among the active inspections."""
+    UPLOAD = "upload"
+    """The bytes of a form that comes in, which counts as an open upload."""
 
 
 def _inspection_key(primary: bool = True) -> Mapped[str]:
@@ -93,7 +103,7 @@ class Task(Base):
     inspection_id: Mapped[str] = _inspection_key(primary=False)
     key: Mapped[str] = mapped_column(String(128))
     stage: Mapped[str] = mapped_column(String(64))
-    queue: Mapped[str] = mapped_column(String(16))
+    queue: Mapped[Queue] = mapped_column(Choice(Queue))
     position: Mapped[int]
     """Order in the plan; runnable tasks are leased in this order."""
     args: Mapped[dict[str, Any]]
@@ -267,8 +277,7 @@ class Reservation(Base):
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     owner: Mapped[str] = mapped_column(String(64), default="")
-    kind: Mapped[str] = mapped_column(String(16))
-    """inspection: a place among the active ones; upload: a form that comes in."""
+    kind: Mapped[ReservationKind] = mapped_column(Choice(ReservationKind))
     bytes: Mapped[int] = mapped_column(BigInteger, default=0)
     """Still to be written."""
     expires_at: Mapped[datetime] = mapped_column(index=True)

@@ -12,9 +12,13 @@ from pathlib import Path
 
 import pytest
 
+from bench.mutate.command import Fate
 from core.flags import Severity, Verdict
 from core.mapping.rows import Outcome
-from core.states import AttemptOutcome, InspectionState, RunState, StageState, TaskState, run_state
+from core.states import AttemptOutcome, InspectionState, Queue, RunState, StageState, TaskState, run_state
+from store.models import ReservationKind
+from worker.events import EventKind
+from worker.task import StopReason
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("core", "store", "worker", "api", "cli", "bench")
@@ -24,9 +28,17 @@ DECLARED = {
     "severity": {member.value for member in Severity},
     "outcome": {member.value for kind in (Outcome, AttemptOutcome) for member in kind},
     "verdict": {member.value for member in Verdict},
+    "queue": {member.value for member in Queue},
+    "kind": {member.value for kind in (EventKind, ReservationKind) for member in kind},
+    "stop": {member.value for member in StopReason},
+    "stopped": {member.value for member in StopReason},
+    "fate": {member.value for member in Fate},
 }
 """Values by the name of the attribute or key that holds them."""
-KINDS = (InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict)
+KINDS = (
+    *(InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict),
+    *(Queue, EventKind, ReservationKind, StopReason, Fate),
+)
 KEY_MODULE = "core/task_key.py"
 
 
@@ -96,6 +108,10 @@ def test_declared_words_are_spelt_in_their_module_only(rule: object) -> None:
         (spelt, 'inspection.state = "failed"'),
         (spelt, 'make(state="waiting")'),
         (spelt, 'if flag["severity"] != "info": pass'),
+        (spelt, 'if event.kind == "finished": pass'),
+        (spelt, 'StageSpec(queue="gpu")'),
+        (spelt, 'Reservation(kind="upload")'),
+        (spelt, 'held.stop = "lost"'),
         (literal_types, 'State = Literal["queued", "running"]'),
         (parsed_keys, 'stage = task.key.split("/", 1)[0]'),
         (parsed_keys, 'found = key.startswith("focal/")'),
@@ -106,9 +122,7 @@ def test_the_rules_find_what_they_are_for(rule: object, text: str) -> None:
     assert list(rule(ast.parse(text)))
 
 
-@pytest.mark.parametrize(
-    "kind", [InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict]
-)
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_member_is_written_as_its_value(kind: type[StrEnum]) -> None:
     for member in kind:
         plain = member.value

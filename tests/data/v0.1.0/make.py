@@ -22,12 +22,12 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-
 from bench.soak.clip import cut
+from store.rows import replace_rows
+
 from bench.soak.servers import free_port
 from cli.main import main as bladeatlas
 from store.db import Database, sqlite_url
-from store.rows import replace_rows
 from tests.api.test_results import ROWS
 
 TUS = {"Tus-Resumable": "1.0.0"}

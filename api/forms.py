@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 _STEP_BYTES = 64 << 20
 _STEP_S = 10.0
 """The promise is brought up to date after so many bytes or so long; a form without a length promises in these steps."""
+_DISPOSITION = b"content-disposition"
+_BOUNDARY = re.compile(rb"[0-9A-Za-z'()+_,./:=? -]{1,70}")
 
 
 @dataclass
@@ -75,10 +77,6 @@ async def promised(admission: Admission, owner: str, size: int) -> AsyncIterator
         yield Promise(held, size)
     finally:
         await on_disk(held.end)
-
-
-_DISPOSITION = b"content-disposition"
-_BOUNDARY = re.compile(rb"[0-9A-Za-z'()+_,./:=? -]{1,70}")
 
 
 @dataclass

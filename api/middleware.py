@@ -29,6 +29,8 @@ _POLICY = (
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 """For pages that are files of a result, such as the gallery: they show their own pictures and reach nothing else."""
+_SHOWN = 64
+"""Characters of an unknown name that are repeated in the answer."""
 
 
 class RequestMetrics:
@@ -91,10 +93,6 @@ def _request_id(scope: Scope) -> str:
     """The client's own name for the request when it is harmless in a log, else a new one."""
     given = Headers(scope=scope).get("x-request-id", "")
     return given if _USABLE.fullmatch(given) else uuid.uuid4().hex
-
-
-_SHOWN = 64
-"""Characters of an unknown name that are repeated in the answer."""
 
 
 async def known_query(request: Request) -> None:

@@ -16,6 +16,15 @@ from api.problems import Refused
 from core.report.csv_form import csv_line
 
 _ONE_RANGE = re.compile(r"bytes=\s*(\d{0,19})\s*-\s*(\d{0,19})\s*")
+CSV = "text/csv; charset=utf-8"
+_ENCODER = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
+Format = Annotated[
+    Literal["json", "csv"] | None, Query(description="wins over `Accept`; without both it is JSON", examples=["csv"])
+]
+CSV_RESPONSE: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"text/csv": {"schema": {"type": "string"}, "example": "id,label\r\n0,dent\r\n"}}}
+}
+"""For `responses=`: the table may also come as CSV."""
 
 
 def matches(header: str | None, etag: str) -> bool:
@@ -60,18 +69,6 @@ def wanted_span(header: str | None, if_range: str | None, etag: str, size: int) 
         detail = f"the file has {size} bytes"
         raise Refused(HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE, "range", detail, where="Range", headers=headers)
     return Span(start, stop)
-
-
-CSV = "text/csv; charset=utf-8"
-_ENCODER = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
-
-Format = Annotated[
-    Literal["json", "csv"] | None, Query(description="wins over `Accept`; without both it is JSON", examples=["csv"])
-]
-CSV_RESPONSE: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"text/csv": {"schema": {"type": "string"}, "example": "id,label\r\n0,dent\r\n"}}}
-}
-"""For `responses=`: the table may also come as CSV."""
 
 
 def wants_csv(request: Request, asked: str | None) -> bool:

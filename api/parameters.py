@@ -9,6 +9,11 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+Seconds = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
+"""A time in the video."""
+Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+"""A number in [0, 1]."""
+
 
 def _without_nul(text: str) -> str:
     """PostgreSQL keeps no NUL in a text, so no row can have one."""
@@ -19,10 +24,6 @@ def _without_nul(text: str) -> str:
 
 Text = Annotated[str, Field(max_length=256), AfterValidator(_without_nul)]
 """A text to compare with a column."""
-Seconds = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
-"""A time in the video."""
-Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
-"""A number in [0, 1]."""
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,37 @@ from core.settings import Settings, make_settings
 from store.admission import IdempotencyKeys, Place
 from store.records import InputFiles
 
+MAX_PARAMETERS_BYTES = 1 << 20
+MAX_INLINE_BYTES = 8 << 20
+"""Largest JSON body. Annotations that are larger come as an upload or in a form: parsed JSON takes much memory."""
+_PARAMETERS_EXAMPLE: dict[str, Any] = {
+    "preset": "draft",
+    "options": {"matching.window": 8},
+    "label": "engine 4, stage 2",
+}
+_BINARY = {"type": "string", "format": "binary"}
+CREATE_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["video"],
+                    "additionalProperties": False,
+                    "properties": {
+                        "video": {**_BINARY, "description": "the video; its content decides, not its declared type"},
+                        "annotations": {**_BINARY, "description": "JSON; see docs/outputs.md for what becomes of it"},
+                        "parameters": {"$ref": "#/components/schemas/Parameters"},
+                    },
+                }
+            },
+            "application/json": {"schema": {"$ref": "#/components/schemas/CreateBody"}},
+        },
+    }
+}
+"""OpenAPI's description of both."""
+
 
 @dataclass(frozen=True)
 class LocalFile:
@@ -212,16 +243,6 @@ def _adopt(services: Services, key: str, path: Path) -> None:
         services.artifacts.adopt(key, path)
 
 
-MAX_PARAMETERS_BYTES = 1 << 20
-MAX_INLINE_BYTES = 8 << 20
-"""Largest JSON body. Annotations that are larger come as an upload or in a form: parsed JSON takes much memory."""
-_PARAMETERS_EXAMPLE: dict[str, Any] = {
-    "preset": "draft",
-    "options": {"matching.window": 8},
-    "label": "engine 4, stage 2",
-}
-
-
 class CreateBody(BaseModel):
     """An inspection of uploads that are finished."""
 
@@ -234,30 +255,6 @@ class CreateBody(BaseModel):
     annotations_upload: str | None = Field(None, description="id of the annotations' upload")
     annotations: dict[str, Any] | None = Field(None, description="the annotations themselves, up to 8 MiB")
     parameters: Parameters = Parameters()
-
-
-_BINARY = {"type": "string", "format": "binary"}
-CREATE_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["video"],
-                    "additionalProperties": False,
-                    "properties": {
-                        "video": {**_BINARY, "description": "the video; its content decides, not its declared type"},
-                        "annotations": {**_BINARY, "description": "JSON; see docs/outputs.md for what becomes of it"},
-                        "parameters": {"$ref": "#/components/schemas/Parameters"},
-                    },
-                }
-            },
-            "application/json": {"schema": {"$ref": "#/components/schemas/CreateBody"}},
-        },
-    }
-}
-"""OpenAPI's description of both."""
 
 
 @asynccontextmanager

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from starlette.concurrency import run_in_threadpool
 
 FRESH_S = 0.2
-"""A look may be this old. A change that came through this process is seen at once: see `Watcher.forget`."""
+"""A look may be this old. A change that came through this process is seen at once: see `Watcher.invalidate`."""
 POLL_S = 0.7
 """How often a waiting request looks."""
 _REMEMBERED = 1000
@@ -65,7 +65,7 @@ class Watcher:
         if len(self._known) > _REMEMBERED:
             del self._known[next(iter(self._known))]
 
-    def forget(self, inspection_id: str) -> None:
+    def invalidate(self, inspection_id: str) -> None:
         """Something changed it: looks that began before are not given to anybody new."""
         self._known.pop(inspection_id, None)
         self._flights.pop(inspection_id, None)

@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from cli.terminal import console, say_json, visible
 from core.states import TaskState
-from worker.events import Event
+from worker.events import Event, EventKind
 
 PLAIN_INTERVAL_S = 15.0
 """A log gets a line of progress no more often than this, besides one line per finished stage."""
@@ -66,7 +66,7 @@ class PlainDisplay(Display):
     def show(self, event: Event) -> None:
         """Print finished stages, retries, and now and then where the run is."""
         text = self._stages.finished(event)
-        if text is None and event.kind == "progress" and self._clock() >= self._next:
+        if text is None and event.kind == EventKind.PROGRESS and self._clock() >= self._next:
             text = f"{event.stage} {event.stage_fraction:.0%}"
         if text is None:
             return
@@ -117,9 +117,9 @@ class _Stages:
 
     def finished(self, event: Event) -> str | None:
         """The line of a stage whose last task just ended, or of a retry; else None."""
-        if event.kind == "retry":
+        if event.kind == EventKind.RETRY:
             return f"{event.key}: trying again: {event.message}"
-        if event.kind != "ended":
+        if event.kind != EventKind.ENDED:
             return None
         stage = event.stage
         self._ended.setdefault(stage, Counter())["reused" if event.reused else event.state] += 1

@@ -14,6 +14,8 @@ from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.scene.detection import REASONS, Reason
 
+_DEFECT = re.compile(r"[dD]?([0-9]{1,9})")
+
 
 def point(parsed: argparse.Namespace) -> int:
     """Cast a pixel of a finished result onto its surface and say what is there."""
@@ -57,9 +59,6 @@ def numbers(text: str, count: int, where: str) -> list[float]:
 def three(values: tuple[float, float, float]) -> str:
     """A place for people."""
     return ", ".join(f"{value:.5f}" for value in values)
-
-
-_DEFECT = re.compile(r"[dD]?([0-9]{1,9})")
 
 
 def views(parsed: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import argparse
 
 from cli.terminal import say
 from core.errors import BadInput
+from core.states import Queue
 from store import json_log
 from store.db import Database
 from store.factory import open_database
@@ -13,7 +14,6 @@ from store.monitoring import WorkerRegistry
 from store.settings import DeploymentSettings, deployment_settings
 from worker.broker import run_worker
 
-_QUEUES = ("cpu", "gpu")
 _LATE = 3
 """Heartbeats after which a worker counts as gone."""
 
@@ -22,8 +22,8 @@ def command(parsed: argparse.Namespace) -> int:
     """Run tasks until the process is told to stop; returns its exit code."""
     settings = deployment_settings()
     queues = [name.strip() for name in parsed.queues.split(",")]
-    if not set(queues) <= set(_QUEUES):
-        raise BadInput(f"queues '{parsed.queues}'; known: {', '.join(_QUEUES)}", where="--queues")
+    if not set(queues) <= set(Queue):
+        raise BadInput(f"queues '{parsed.queues}'; known: {', '.join(Queue)}", where="--queues")
     if parsed.workers is not None and parsed.workers < 1:
         raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
     if parsed.check:

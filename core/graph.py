@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 from core.settings import Settings
 from core.stage import Facts
+from core.states import Queue
 from core.task_key import chunk_key, key_of, stage_of
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
@@ -30,7 +31,7 @@ class StageSpec:
     """Groups or single dotted options that the stage reads: exactly these enter its fingerprint."""
     fan_out: bool = False
     """Many tasks of this stage run side by side, so each uses one thread."""
-    queue: Literal["cpu", "gpu"] = "cpu"
+    queue: Queue = Queue.CPU
     weight: float = 1.0
     """Rough share of the run's time, for progress before anything is learnt: 10 s of two cores each."""
     reads_video: bool = False
@@ -107,7 +108,7 @@ STAGES: dict[str, StageSpec] = {
             "seed",
             version=2,
             fan_out=True,
-            queue="gpu",
+            queue=Queue.GPU,
             weight=24,
         ),
         _spec(
@@ -117,7 +118,7 @@ STAGES: dict[str, StageSpec] = {
             "seed",
             version=2,
             fan_out=True,
-            queue="gpu",
+            queue=Queue.GPU,
             weight=21,
         ),
         _spec("fuse", "fusion", weight=3),

@@ -1,4 +1,4 @@
-"""States of an inspection, of its tasks and stages, of attempts, and of a run that has ended: each value once."""
+"""States of an inspection, its tasks, stages, attempts and of an ended run; queues of tasks: each value once."""
 
 from __future__ import annotations
 
@@ -28,6 +28,14 @@ class TaskState(StrEnum):
     FAILED = "failed"
     SKIPPED = "skipped"
     CANCELLED = "cancelled"
+
+
+class Queue(StrEnum):
+    """What a task needs, which decides what workers may take it."""
+
+    CPU = "cpu"
+    GPU = "gpu"
+    """Faster where there is an accelerator; runs without one as well."""
 
 
 class StageState(StrEnum):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -24,11 +24,9 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from core.errors import BadInput, BladeAtlasError, DiskFull
 from store.db import Database
-from store.models import ACTIVE_INSPECTION, IdempotencyKey, Inspection, Reservation, Upload
+from store.models import ACTIVE_INSPECTION, IdempotencyKey, Inspection, Reservation, ReservationKind, Upload
 from store.settings import DeploymentSettings
 
-INSPECTION, UPLOAD = "inspection", "upload"
-"""Kinds of reservation: a place among the active inspections; a form that comes in, with its bytes."""
 _LOCK = 0x41444D49
 _PLACE_S = 900.0
 _FORM_S = 180.0
@@ -52,14 +50,14 @@ class Admission:
     def look(self, owner: str) -> None:
         """`LimitReached` when no inspection could begin now. Promises nothing: saves work that would be refused."""
         with self.db.read() as session:
-            self._require_inspection(session, owner, self.db.now(session))
+            self._require(session, owner, ReservationKind.INSPECTION, self.db.now(session))
 
     @contextmanager
     def place(self, owner: str) -> Iterator[Place]:
         """A place among the active inspections, given back unless it is used; `LimitReached` when there is none."""
         with self.db.write() as session:
-            self._require_inspection(session, owner, self._begin(session))
-            held = self._reserve(session, owner, INSPECTION, 0, _PLACE_S)
+            self._require(session, owner, ReservationKind.INSPECTION, self._begin(session))
+            held = self._reserve(session, owner, ReservationKind.INSPECTION, 0, _PLACE_S)
         try:
             yield Place(self, owner, held)
         finally:
@@ -73,7 +71,7 @@ class Admission:
             DiskFull: with what was promised before, the bytes would eat into the reserve.
         """
         now = self._begin(session)
-        self._require_upload(session, owner, now)
+        self._require(session, owner, ReservationKind.UPLOAD, now)
         self.require_bytes(session, size, now)
 
     def promise_form(self, owner: str, size: int) -> FormPromise:
@@ -84,13 +82,13 @@ class Admission:
         """
         with self.db.write() as session:
             self.admit_upload(session, owner, size)
-            held = self._reserve(session, owner, UPLOAD, size, _FORM_S)
+            held = self._reserve(session, owner, ReservationKind.UPLOAD, size, _FORM_S)
         return FormPromise(self, owner, held)
 
     def require_bytes(self, session: Session, size: int, now: datetime) -> None:
         """`DiskFull` when `size` more bytes, and all that is promised and not yet written, would reach the reserve."""
         rest = session.scalar(select(func.sum(Upload.length - Upload.offset)).where(*_open_uploads(now)))
-        forms = session.scalar(select(func.sum(Reservation.bytes)).where(*_reserved(UPLOAD, now)))
+        forms = session.scalar(select(func.sum(Reservation.bytes)).where(*_reserved(ReservationKind.UPLOAD, now)))
         promised = int(rest or 0) + int(forms or 0)
         free = shutil.disk_usage(self.settings.folder("")).free
         if free - promised - size < self.settings.reserve_bytes:
@@ -104,19 +102,21 @@ class Admission:
         self.db.lock(session, _LOCK)
         return self.db.now(session)
 
-    def _require_inspection(self, session: Session, owner: str, now: datetime) -> None:
-        active = _count(session, owner, Inspection.owner, Inspection.state.in_(ACTIVE_INSPECTION))
-        coming = _count(session, owner, Reservation.owner, *_reserved(INSPECTION, now))
-        limits = (self.settings.max_active, self.settings.max_active_per_owner)
-        _require("max_active", "too_many_active", "inspections are queued or running", limits, active, coming)
+    def _require(self, session: Session, owner: str, kind: ReservationKind, now: datetime) -> None:
+        """`LimitReached` unless one more fits, in all and of this owner; names the limit."""
+        limit = _LIMITS[kind]
+        rows = _count(session, owner, limit.owner, *limit.open_rows(now))
+        held = _count(session, owner, Reservation.owner, *_reserved(kind, now))
+        of_all, of_owner = limit.allowed(self.settings)
+        for used, allowed, name, whose, suffix in (
+            (rows[0] + held[0], of_all, limit.setting, "", ""),
+            (rows[1] + held[1], of_owner, f"{limit.setting}_per_owner", " of yours", "_of_owner"),
+        ):
+            if used >= allowed:
+                message = f"{used} {limit.what}{whose} already, and {name} is {allowed}; try again later"
+                raise LimitReached(message, code=limit.code + suffix, where=name)
 
-    def _require_upload(self, session: Session, owner: str, now: datetime) -> None:
-        uploads = _count(session, owner, Upload.owner, *_open_uploads(now))
-        forms = _count(session, owner, Reservation.owner, *_reserved(UPLOAD, now))
-        limits = (self.settings.max_open_uploads, self.settings.max_open_uploads_per_owner)
-        _require("max_open_uploads", "too_many_uploads", "uploads are open", limits, uploads, forms)
-
-    def _reserve(self, session: Session, owner: str, kind: str, size: int, seconds: float) -> str:
+    def _reserve(self, session: Session, owner: str, kind: ReservationKind, size: int, seconds: float) -> str:
         held = uuid.uuid4().hex
         expires_at = self.db.now(session) + timedelta(seconds=seconds)
         session.add(Reservation(id=held, owner=owner, kind=kind, bytes=size, expires_at=expires_at))
@@ -145,7 +145,7 @@ class Place:
         now = self.admission._begin(session)
         kept = session.get(Reservation, self.held)
         if kept is None or kept.expires_at <= now:
-            self.admission._require_inspection(session, self.owner, now)
+            self.admission._require(session, self.owner, ReservationKind.INSPECTION, now)
         if kept is not None:
             session.delete(kept)
             session.flush()
@@ -171,7 +171,7 @@ class FormPromise:
             before = kept.bytes if kept is not None and kept.expires_at > now else 0
             if left > before:
                 self.admission.require_bytes(session, left - before, now)
-            renewed = Reservation(id=self.held, owner=self.owner, kind=UPLOAD, bytes=left)
+            renewed = Reservation(id=self.held, owner=self.owner, kind=ReservationKind.UPLOAD, bytes=left)
             renewed.expires_at = now + timedelta(seconds=_FORM_S)
             session.merge(renewed)
 
@@ -186,8 +186,42 @@ def _open_uploads(now: datetime) -> tuple[ColumnElement[bool], ...]:
     return (Upload.removed_at.is_(None), Upload.expires_at > now, unfinished)
 
 
-def _reserved(kind: str, now: datetime) -> tuple[ColumnElement[bool], ...]:
+def _reserved(kind: ReservationKind, now: datetime) -> tuple[ColumnElement[bool], ...]:
     return (Reservation.kind == kind, Reservation.expires_at > now)
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """How many of something may be open at once, in all and of one owner."""
+
+    setting: str
+    """Of all; the one of an owner is named ``<setting>_per_owner``."""
+    allowed: Callable[[DeploymentSettings], tuple[int, int]]
+    """Values of both."""
+    code: str
+    what: str
+    owner: InstrumentedAttribute[str]
+    open_rows: Callable[[datetime], tuple[ColumnElement[bool], ...]]
+
+
+_LIMITS: Mapping[ReservationKind, _Limit] = {
+    ReservationKind.INSPECTION: _Limit(
+        "max_active",
+        lambda settings: (settings.max_active, settings.max_active_per_owner),
+        "too_many_active",
+        "inspections are queued or running",
+        Inspection.owner,
+        lambda _now: (Inspection.state.in_(ACTIVE_INSPECTION),),
+    ),
+    ReservationKind.UPLOAD: _Limit(
+        "max_open_uploads",
+        lambda settings: (settings.max_open_uploads, settings.max_open_uploads_per_owner),
+        "too_many_uploads",
+        "uploads are open",
+        Upload.owner,
+        _open_uploads,
+    ),
+}
 
 
 def _count(
@@ -196,23 +230,6 @@ def _count(
     """Rows of all and of this owner."""
     row = session.execute(select(func.count(), func.count().filter(column == owner)).where(*where)).one()
     return int(row[0]), int(row[1])
-
-
-def _require(
-    setting: str, code: str, what: str, limits: tuple[int, int], rows: tuple[int, int], reserved: tuple[int, int]
-) -> None:
-    """`LimitReached` unless one more fits, in all and of this owner; names the limit."""
-    for limit, used, name, whose in zip(
-        limits,
-        (rows[0] + reserved[0], rows[1] + reserved[1]),
-        (setting, f"{setting}_per_owner"),
-        ("", " of yours"),
-        strict=True,
-    ):
-        if used >= limit:
-            suffix = "_of_owner" if whose else ""
-            message = f"{used} {what}{whose} already, and {name} is {limit}; try again later"
-            raise LimitReached(message, code=code + suffix, where=name)
 
 
 class OtherBody(BadInput):

@@ -58,7 +58,7 @@ class Retention:
             return list(session.scalars(select(Inspection.id).where(*gone, Inspection.state.not_in(ACTIVE_INSPECTION))))
 
     def purge(self, inspection_id: str) -> None:
-        """Forget a deleted inspection but for its row; what it used is then unused unless others use it."""
+        """Delete what belongs to a deleted inspection, but not its row. What it used may be unused then."""
         with self.db.write() as session:
             inspection = lock_inspection(session, inspection_id)
             if inspection.deleted_at is None or inspection.state in ACTIVE_INSPECTION:
@@ -113,9 +113,9 @@ class Retention:
             tasks = session.scalars(select(Task.fingerprint).where(Task.fingerprint.is_not(None)).distinct())
             return {*(name for name in tasks if name), *session.scalars(select(Result.fingerprint))}
 
-    def forget_unused(self, fingerprints: Iterable[str]) -> list[str]:
-        """Forget results that still nobody uses; returns the paths of those that are forgotten."""
-        forgotten = []
+    def delete_unused(self, fingerprints: Iterable[str]) -> list[str]:
+        """Delete results that still nobody uses; returns the paths of those that were deleted."""
+        deleted = []
         for fingerprint in fingerprints:
             with self.db.write() as session:
                 # Locked before the question: a plan that takes this result up holds it, and we wait for it.
@@ -124,8 +124,8 @@ class Retention:
                 used = session.scalar(select(Task.id).where(Task.fingerprint == fingerprint).limit(1))
                 if result is not None and used is None and not _kept_for_later(session.scalars(_PREVIOUS), fingerprint):
                     session.delete(result)
-                    forgotten.append(result.path)
-        return forgotten
+                    deleted.append(result.path)
+        return deleted
 
     def expire_uploads(self) -> int:
         """Mark uploads as removed that nobody used in time; returns how many."""
@@ -143,7 +143,7 @@ class Retention:
             return set(session.scalars(select(Upload.id).where(Upload.removed_at.is_(None))))
 
     def tidy(self) -> None:
-        """Forget what nobody asks for any more: old requests, absent workers, removed uploads, ended reservations."""
+        """Delete what nobody asks for any more: old requests, absent workers, removed uploads, ended reservations."""
         with self.db.write() as session:
             now = self.db.now(session)
             old, unseen = now - timedelta(days=_IDEMPOTENCY_DAYS), now - timedelta(days=_WORKER_DAYS)

@@ -169,7 +169,7 @@ class Inspections:
             for result in sorted(results, key=lambda one: one.fingerprint):
                 put_result(session, result, now)
 
-    def forget(self, fingerprints: Iterable[str]) -> None:
+    def delete_results(self, fingerprints: Iterable[str]) -> None:
         """Remove results from memory; whoever calls removes their files afterwards, never before."""
         with self.db.write() as session:
             for fingerprint in fingerprints:
@@ -227,8 +227,8 @@ def mark_deleted(db: Database, inspection_id: str) -> bool:
         return changed(session, update(Inspection).where(*where).values(deleted_at=db.now(session)))
 
 
-def forget_from(inspections: Inspections, inspection_id: str, stage: str) -> list[str]:
-    """Forget the results of `stage` and of all that follow it in this plan.
+def delete_results_from(inspections: Inspections, inspection_id: str, stage: str) -> list[str]:
+    """Delete the results of `stage` and of all that follow it in this plan.
 
     Returns:
         Their paths in the result store; whoever calls removes the files, afterwards and never before.
@@ -251,5 +251,5 @@ def forget_from(inspections: Inspections, inspection_id: str, stage: str) -> lis
             message = f"another inspection that is not over uses the same results of '{stage}'"
             raise BadInput(message, code="conflict", where="from_stage")
     paths = inspections.known_results()
-    inspections.forget(fingerprints)
+    inspections.delete_results(fingerprints)
     return [paths[name] for name in sorted(fingerprints) if name in paths]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
+from enum import StrEnum
 from typing import Any
 
 from sqlalchemy import BigInteger, ForeignKey, Index, String, UniqueConstraint
@@ -11,7 +12,7 @@ from sqlalchemy.orm import Mapped, mapped_column
 from core.scene import case as declared_cases
 from core.scene import defect as declared_events
 from core.scene import detection as declared_detections
-from core.states import AttemptOutcome, InspectionState, TaskState
+from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 
 # Whoever takes the base class from here has all tables in its metadata.
 from store.columns import Base as Base
@@ -23,6 +24,15 @@ ACTIVE_INSPECTION = (*LEASABLE, InspectionState.CANCELLING)
 """States of an inspection that is not over."""
 OVER_TASK = (TaskState.SUCCEEDED, TaskState.FAILED, TaskState.SKIPPED, TaskState.CANCELLED)
 """States of a task that will not change by itself."""
+
+
+class ReservationKind(StrEnum):
+    """What a reservation holds."""
+
+    INSPECTION = "inspection"
+    """A place among the active inspections."""
+    UPLOAD = "upload"
+    """The bytes of a form that comes in, which counts as an open upload."""
 
 
 def _inspection_key(primary: bool = True) -> Mapped[str]:
@@ -93,7 +103,7 @@ class Task(Base):
     inspection_id: Mapped[str] = _inspection_key(primary=False)
     key: Mapped[str] = mapped_column(String(128))
     stage: Mapped[str] = mapped_column(String(64))
-    queue: Mapped[str] = mapped_column(String(16))
+    queue: Mapped[Queue] = mapped_column(Choice(Queue))
     position: Mapped[int]
     """Order in the plan; runnable tasks are leased in this order."""
     args: Mapped[dict[str, Any]]
@@ -179,6 +189,8 @@ class CaseRow(_Row, Base):
     name: Mapped[str] = mapped_column(String(64), primary_key=True)
     kind: Mapped[str] = mapped_column(String(16))
     status: Mapped[str] = mapped_column(String(16))
+    seconds: Mapped[float]
+    """The row that a stage makes has none yet; the one that is stored always has."""
     start_mode: Mapped[str | None] = mapped_column(String(16))
     selected: Mapped[int] = mapped_column(default=0)
     vetoed: Mapped[int] = mapped_column(default=0)
@@ -267,8 +279,7 @@ class Reservation(Base):
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     owner: Mapped[str] = mapped_column(String(64), default="")
-    kind: Mapped[str] = mapped_column(String(16))
-    """inspection: a place among the active ones; upload: a form that comes in."""
+    kind: Mapped[ReservationKind] = mapped_column(Choice(ReservationKind))
     bytes: Mapped[int] = mapped_column(BigInteger, default=0)
     """Still to be written."""
     expires_at: Mapped[datetime] = mapped_column(index=True)

@@ -16,7 +16,7 @@ from typing import Any
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
-from core.states import AttemptOutcome, InspectionState, TaskState
+from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 from store.advance import accept, advance
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
@@ -51,7 +51,7 @@ class Plan:
             advance(session, self.graph, inspection, self.db.now(session))
 
     def lease(
-        self, owner: str, *, inspection_id: str | None = None, queues: Collection[str] = ("cpu", "gpu")
+        self, owner: str, *, inspection_id: str | None = None, queues: Collection[str] = tuple(Queue)
     ) -> Lease | None:
         """Take the first runnable task, of the oldest inspection first; None when there is none."""
         with self.db.read() as session:
@@ -204,7 +204,7 @@ class Plan:
             ).all()
         return sum(self._free(inspection_id, owner_prefix) for inspection_id in ids)
 
-    def runnable(self) -> dict[str, int]:
+    def runnable(self) -> dict[Queue, int]:
         """How many tasks could start now, by queue."""
         with self.db.read() as session:
             query = (

@@ -17,6 +17,12 @@ from core.errors import BadInput
 from core.names import unknown_name
 from core.video.limits import MAX_FRAME_PIXELS
 
+PREFIX = "BLADEATLAS_"
+_OF_CLIENTS = ("SERVER", "API_KEY")
+"""What the commands read that talk to a server; see `cli.remote`."""
+_OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
+"""How the names begin that only the tests read."""
+
 
 class DeploymentSettings(BaseSettings):
     """Where things are kept and how work is leased; every field is one environment variable."""
@@ -117,13 +123,6 @@ class DeploymentSettings(BaseSettings):
 def available_cores() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-PREFIX = "BLADEATLAS_"
-_OF_CLIENTS = ("SERVER", "API_KEY")
-"""What the commands read that talk to a server; see `cli.remote`."""
-_OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
-"""How the names begin that only the tests read."""
 
 
 def deployment_settings() -> DeploymentSettings:

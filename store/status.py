@@ -20,6 +20,10 @@ from store.models import ACTIVE_INSPECTION, OVER_TASK, CaseRow, Inspection, Task
 
 STEP = 0.005
 """Progress is shown in steps of this, so that remembering the highest costs few writes."""
+PUBLISH = "publish"
+"""Name of what happens after the last stage: the files of the contract are put into the artifact store."""
+_ALMOST = 0.995
+"""Shown at most until the result can be fetched."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +64,6 @@ def plan_share(graph: Graph, counts: Mapping[str, StageCount]) -> float:
 def in_steps(share: float) -> float:
     """`share` rounded down to `STEP`."""
     return int(share / STEP + 1e-9) * STEP
-
-
-PUBLISH = "publish"
-"""Name of what happens after the last stage: the files of the contract are put into the artifact store."""
-_ALMOST = 0.995
-"""Shown at most until the result can be fetched."""
 
 
 @dataclass(frozen=True)

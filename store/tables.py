@@ -30,6 +30,36 @@ from store.db import Database
 from store.leasing import changed
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow, MetricRow, TableVersion
 
+DEFECT_COLUMNS = (
+    "id",
+    "label",
+    "model",
+    "x",
+    "y",
+    "z",
+    "extent",
+    "extent_unit",
+    "extent_sigma",
+    "confidence",
+    "persistence",
+    "k",
+    "n",
+    "n_events",
+    "n_detections",
+    "blade",
+)
+"""Columns of a defect in CSV, where its lists are counted."""
+_PER_TASK: dict[str, type[Base]] = {"cases": CaseRow, "metrics": MetricRow}
+"""Tables that many tasks share: a task replaces what it wrote itself."""
+_WHOLE: dict[str, type[Base]] = {"detections": DetectionRow, "events": EventRow, "defects": DefectRow}
+"""Tables that one task writes whole: the last one holds."""
+_TABLES = {**_PER_TASK, **_WHOLE}
+_CASE_STAGES = ("coarse", "refine")
+_TABLE_FILES: dict[str, dict[str, str]] = {
+    "map_defects": {"detections": "detections.json"},
+    "timeline": {"detections": "detections.json", "events": "timeline.json", "defects": "defects.json"},
+}
+
 
 @dataclass(frozen=True)
 class Table:
@@ -54,25 +84,6 @@ DETECTIONS = Table("detections", DetectionRow, DETECTION_COLUMNS, ("id",))
 TIMELINE = Table("events", EventRow, TIMELINE_COLUMNS, ("event_id",))
 METRICS = Table("metrics", MetricRow, ("name", "value"), ("name",))
 DEFECTS = Table("defects", DefectRow, ("record",), ("id",))
-DEFECT_COLUMNS = (
-    "id",
-    "label",
-    "model",
-    "x",
-    "y",
-    "z",
-    "extent",
-    "extent_unit",
-    "extent_sigma",
-    "confidence",
-    "persistence",
-    "k",
-    "n",
-    "n_events",
-    "n_detections",
-    "blade",
-)
-"""Columns of a defect in CSV, where its lists are counted."""
 
 
 @dataclass(frozen=True)
@@ -235,13 +246,6 @@ def flat_defect(record: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-_PER_TASK: dict[str, type[Base]] = {"cases": CaseRow, "metrics": MetricRow}
-"""Tables that many tasks share: a task replaces what it wrote itself."""
-_WHOLE: dict[str, type[Base]] = {"detections": DetectionRow, "events": EventRow, "defects": DefectRow}
-"""Tables that one task writes whole: the last one holds."""
-_TABLES = {**_PER_TASK, **_WHOLE}
-
-
 def write_rows(session: Session, inspection_id: str, task_key: str, rows: Mapping[str, Any]) -> None:
     """Replace the rows of one task; keys that a table does not know are left to the files."""
     for name in _PER_TASK:
@@ -291,13 +295,6 @@ def _count_change(session: Session, name: str, inspection_id: str) -> None:
     where = (TableVersion.inspection_id == inspection_id, TableVersion.name == name)
     if not changed(session, update(TableVersion).where(*where).values(version=TableVersion.version + 1)):
         session.execute(insert(TableVersion).values(inspection_id=inspection_id, name=name, version=1))
-
-
-_CASE_STAGES = ("coarse", "refine")
-_TABLE_FILES: dict[str, dict[str, str]] = {
-    "map_defects": {"detections": "detections.json"},
-    "timeline": {"detections": "detections.json", "events": "timeline.json", "defects": "defects.json"},
-}
 
 
 def rows_of(key: str, facts: Facts, folder: Path) -> dict[str, Any]:

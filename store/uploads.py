@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 
 _REMEMBERED = 256
+_PART = "form-"
+"""Begin of the names of files that came in a form: they have no row and live as long as their request."""
 
 
 class UploadLocked(BladeAtlasError):
@@ -129,10 +131,6 @@ def _as_expected(error: OSError) -> Exception:
     if error.errno in NO_SPACE:
         return DiskFull("the upload cannot be written: no space left on its disk", where="upload")
     return error
-
-
-_PART = "form-"
-"""Begin of the names of files that came in a form: they have no row and live as long as their request."""
 
 
 @dataclass(frozen=True)

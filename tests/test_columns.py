@@ -133,6 +133,18 @@ def test_columns_are_read_from_the_class() -> None:
     assert "| `verdict` | text or empty | An enumeration, explained over two lines. |\n" in documented(columns)
 
 
+@dataclass(frozen=True)
+class Longer(Widened):
+    """A table that begins with the columns of another."""
+
+    name: str
+    """Name."""
+
+
+def test_the_columns_of_a_base_class_come_first() -> None:
+    assert columns_of(Longer) == (*columns_of(Widened), Column("name", str, False, "Name."))
+
+
 def test_a_column_that_no_table_can_hold_is_refused() -> None:
     @dataclass
     class Nested:

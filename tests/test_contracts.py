@@ -14,11 +14,15 @@ from typing import TypeGuard
 
 import pytest
 
+from bench.mutate.command import Fate
 from core.flags import Severity, Verdict
 from core.scene.case import CaseKind, CaseReason, CaseStatus, StartMode
 from core.scene.detection import Outcome, PlacementMethod, Reason
 from core.scene.frame import Role
-from core.states import AttemptOutcome, InspectionState, RunState, StageState, TaskState, run_state
+from core.states import AttemptOutcome, InspectionState, Queue, RunState, StageState, TaskState, run_state
+from store.models import ReservationKind
+from worker.events import EventKind
+from worker.task import StopReason
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("core", "store", "worker", "api", "cli", "bench")
@@ -31,30 +35,22 @@ DECLARED = {
     "reason": {member.value for kind in (Reason, CaseReason) for member in kind},
     "rung": {member.value for member in PlacementMethod},
     "role": {member.value for member in Role},
-    "kind": {member.value for member in CaseKind},
+    "kind": {member.value for kind in (CaseKind, EventKind, ReservationKind) for member in kind},
     "status": {member.value for member in CaseStatus},
     "start_mode": {member.value for member in StartMode},
+    "queue": {member.value for member in Queue},
+    "stop": {member.value for member in StopReason},
+    "stopped": {member.value for member in StopReason},
+    "fate": {member.value for member in Fate},
 }
 """Values by the name of the attribute or key that holds them."""
 ONLY_DECLARED = {"outcome", "severity", "verdict", "rung", "role", "start_mode"}
 """Names that hold nothing but declared values: a word that is not one of them is misspelt. A `reason` may also be the
 code of an error, and others have kinds and statuses too."""
 KINDS = (
-    InspectionState,
-    TaskState,
-    StageState,
-    AttemptOutcome,
-    RunState,
-    Outcome,
-    Severity,
-    Verdict,
-    Reason,
-    PlacementMethod,
-    Role,
-    CaseKind,
-    CaseStatus,
-    CaseReason,
-    StartMode,
+    *(InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict),
+    *(Reason, PlacementMethod, Role, CaseKind, CaseStatus, CaseReason, StartMode),
+    *(Queue, EventKind, ReservationKind, StopReason, Fate),
 )
 KEY_MODULE = "core/task_key.py"
 PUBLISHED = "core/outputs.py"
@@ -160,6 +156,10 @@ def test_declared_words_are_spelt_in_their_module_only(rule: object) -> None:
         (bare, 'if frame["role"] in ("both", other): pass'),
         (bare, 'if "warm" == case.start_mode: pass'),
         (bare, 'match row.status:\n    case "failed": pass'),
+        (spelt, 'if event.kind == "finished": pass'),
+        (spelt, 'StageSpec(queue="gpu")'),
+        (spelt, 'Reservation(kind="upload")'),
+        (spelt, 'held.stop = "lost"'),
         (literal_types, 'State = Literal["queued", "running"]'),
         (parsed_keys, 'stage = task.key.split("/", 1)[0]'),
         (parsed_keys, 'found = key.startswith("focal/")'),

@@ -15,8 +15,10 @@ from functools import partial
 from typing import Any
 
 from celery import Celery, signals
-from kombu import Connection, Exchange, Queue
+from kombu import Connection, Exchange
+from kombu import Queue as BrokerQueue
 
+from core.states import Queue
 from store.db import Database
 from store.factory import open_artifacts
 from store.graph import load_graph
@@ -29,8 +31,8 @@ from worker.periodic import Periodic
 from worker.runner import Heartbeat
 
 _TASK = "bladeatlas.run"
-_QUEUES = ("cpu", "gpu")
 _CONNECT_S = 4.0
+_log = logger("bladeatlas.worker")
 
 
 class TaskQueue:
@@ -40,7 +42,7 @@ class TaskQueue:
         self._app = Celery("bladeatlas", broker=broker_url, set_as_current=False)
         # The nameless exchange needs no bindings: a broker that lost its memory delivers at once again.
         self._queues = {
-            name: Queue(f"bladeatlas.{name}", Exchange(""), routing_key=f"bladeatlas.{name}") for name in _QUEUES
+            name: BrokerQueue(f"bladeatlas.{name}", Exchange(""), routing_key=f"bladeatlas.{name}") for name in Queue
         }
         self._app.conf.update(
             broker_connection_retry_on_startup=True,
@@ -49,7 +51,7 @@ class TaskQueue:
             broker_transport_options=_transport_options(broker_url, visibility_timeout_s),
             task_acks_late=True,
             task_create_missing_queues=False,
-            task_default_queue=self._queues["cpu"].name,
+            task_default_queue=self._queues[Queue.CPU].name,
             task_ignore_result=True,
             task_queues=list(self._queues.values()),
             worker_enable_remote_control=False,
@@ -97,7 +99,7 @@ class TaskQueue:
             # Threads: they only wait for child processes, and a signal reaches the main thread at once.
             pool="threads",
             concurrency=workers,
-            queues=[self._queues[name].name for name in queues],
+            queues=[self._queues[Queue(name)].name for name in queues],
             hostname=name,
             quiet=True,
             without_gossip=True,
@@ -108,7 +110,7 @@ class TaskQueue:
         return int(worker.exitcode or 0)
 
     @staticmethod
-    def _waiting(connection: Connection, queue: Queue) -> int:
+    def _waiting(connection: Connection, queue: BrokerQueue) -> int:
         """Messages that nobody has taken yet; makes the queue when there is none."""
         with connection.channel() as channel:
             return int(queue(channel).queue_declare().message_count)
@@ -128,9 +130,6 @@ def _transport_options(broker_url: str, visibility_timeout_s: float) -> dict[str
         "socket_connect_timeout": _CONNECT_S,
         "socket_keepalive": True,
     }
-
-
-_log = logger("bladeatlas.worker")
 
 
 def run_worker(settings: DeploymentSettings, database: Database, queues: Sequence[str], workers: int) -> int:

@@ -46,7 +46,7 @@ class Cleaner:
         self._evict()
 
     def _sweep_results(self) -> None:
-        for path in self.retention.forget_unused(self.inspections.unused()):
+        for path in self.retention.delete_unused(self.inspections.unused()):
             self.results.remove(*path.split("/", 1))
         for path in self.results.unknown(self.retention.known_fingerprints, self.stale_s):
             self.results.remove(*path.split("/", 1))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from pathlib import Path
-from typing import Literal
 
 from core.errors import BladeAtlasError
 from core.states import AttemptOutcome, RunState, StageState, TaskState
@@ -16,7 +16,24 @@ from store.models import OVER_TASK
 from store.records import Lease, TaskView
 from store.status import StageCount, plan_share, stage_weights
 
-EventKind = Literal["opened", "started", "progress", "retry", "ended", "published", "finished"]
+
+class EventKind(StrEnum):
+    """What happened."""
+
+    OPENED = "opened"
+    """The plan is in order: once, at the start."""
+    STARTED = "started"
+    """A task begins."""
+    PROGRESS = "progress"
+    """A task reports."""
+    RETRY = "retry"
+    """A task failed and will be tried again."""
+    ENDED = "ended"
+    """A task is over."""
+    PUBLISHED = "published"
+    """The files of the contract are written: once."""
+    FINISHED = "finished"
+    """The run is over: once, at the end."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +41,6 @@ class Event:
     """One step of a run, for a progress display or as a JSON line."""
 
     kind: EventKind
-    """``opened`` once at the start; ``started``/``progress``/``retry``/``ended`` of a task; ``published``,
-    ``finished`` once at the end."""
     fraction: float
     """Share of the whole run in [0, 1]; never falls within a run."""
     eta_s: float | None = None
@@ -107,7 +122,7 @@ class Tracker:
 
     def _ended(self, task: TaskView) -> Event:
         message = str((task.error or {}).get("message", ""))
-        event = self.event("ended", task.key, message)
+        event = self.event(EventKind.ENDED, task.key, message)
         return replace(event, state=task.state, seconds=task.seconds, reused=task.reused)
 
     def running(self, key: str, progress: float) -> None:
@@ -126,7 +141,7 @@ class Tracker:
         self._fraction = max(self._fraction, plan_share(self._graph, counts))
         return Event(
             kind=kind,
-            fraction=1.0 if kind == "finished" and state == RunState.SUCCEEDED else self._fraction,
+            fraction=1.0 if kind == EventKind.FINISHED and state == RunState.SUCCEEDED else self._fraction,
             eta_s=self._eta(),
             stage=stage,
             key=key,
@@ -186,20 +201,20 @@ class Reporter:
         """The plan is in order; what is finished already is told at once."""
         with self._mutex:
             ended = self.tracker.refresh(self.tasks())
-            self.tell("opened")
+            self.tell(EventKind.OPENED)
             self._send(ended)
 
     def started(self, lease: Lease) -> None:
         """A runner took a task."""
         with self._mutex:
             self.tracker.running(lease.key, 0.0)
-            self.tell("started", lease.key)
+            self.tell(EventKind.STARTED, lease.key)
 
     def progressed(self, lease: Lease, fraction: float, message: str) -> None:
         """A running task reports."""
         with self._mutex:
             self.tracker.running(lease.key, fraction)
-            self.tell("progress", lease.key, message)
+            self.tell(EventKind.PROGRESS, lease.key, message)
 
     def ended(self, lease: Lease, outcome: AttemptOutcome, error: BladeAtlasError | None) -> None:
         """A runner is through with a task; others may have ended with it (reused, skipped)."""
@@ -208,7 +223,7 @@ class Reporter:
             self.tracker.idle(lease.key)
             ended = self.tracker.refresh(self.tasks())
             if outcome == AttemptOutcome.RETRIED:
-                self.tell("retry", lease.key, error.message if error else "")
+                self.tell(EventKind.RETRY, lease.key, error.message if error else "")
             self._send(ended)
 
     def tell(self, kind: EventKind, key: str = "", message: str = "", state: str = "") -> None:

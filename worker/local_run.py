@@ -32,7 +32,7 @@ from store.models import ACTIVE_INSPECTION, OVER_TASK
 from store.plan import Plan
 from store.records import InputFiles, InspectionView, TaskView
 from store.settings import available_cores, deployment_settings
-from worker.events import OnEvent, Outcome, Reporter, StageOutcome, Tracker
+from worker.events import EventKind, OnEvent, Outcome, Reporter, StageOutcome, Tracker
 from worker.logs import TaskLogs
 from worker.loop import LocalRunners, raise_failure
 from worker.publish import publish, record_of, report_rows
@@ -40,6 +40,8 @@ from worker.results import ResultFolders
 from worker.runner import TaskRunner, result_of
 
 HIDDEN = ".bladeatlas"
+_LOCAL = "local"
+"""Id of the one inspection in the plan of an output folder."""
 
 
 @dataclass(frozen=True)
@@ -107,10 +109,6 @@ def _cannot_write(out: Path, error: OSError) -> BladeAtlasError:
     return BadInput(f"the output folder '{out}' cannot be written: {reason}", code="unwritable_output", where="--out")
 
 
-_LOCAL = "local"
-"""Id of the one inspection in the plan of an output folder."""
-
-
 @dataclass(frozen=True)
 class Names:
     """The caller's own names of a run."""
@@ -137,7 +135,7 @@ def run_inspection(
     Args:
         workers: tasks side by side; None = number of cores.
         on_event: called from runner threads, one call at a time.
-        from_stage: forget the results of this stage and of all that depend on it.
+        from_stage: delete the results of this stage and of all that depend on it.
         force: accept a folder that holds the result of another input, or files under the names of the contract.
         names: what the caller calls the run; kept beside the result.
         graph: stages to run; another one in tests.
@@ -249,7 +247,7 @@ class _Run:
         """Files decide: results without a row are adopted, rows without files forgotten."""
         on_disk = {manifest.fingerprint: manifest for manifest in self._results.all()}
         known = self._inspections.known_results()
-        self._inspections.forget(name for name in known if name not in on_disk)
+        self._inspections.delete_results(name for name in known if name not in on_disk)
         self._inspections.adopt(
             result_of(manifest, self._results, peak_rss_bytes=manifest.peak_rss_bytes)
             for name, manifest in on_disk.items()
@@ -259,7 +257,7 @@ class _Run:
     def _remove(self, fingerprints: Iterable[str]) -> None:
         paths = self._inspections.known_results()
         doomed = [name for name in fingerprints if name in paths]
-        self._inspections.forget(doomed)
+        self._inspections.delete_results(doomed)
         for fingerprint in doomed:
             self._results.remove(_stage(paths[fingerprint]), fingerprint)
 
@@ -289,7 +287,7 @@ class _Run:
         record, folders = record_of(inspection, tasks, self._results)
         report = publish(record, folders, self._folder.out, self._folder.hidden)
         self._inspections.put_rows(_LOCAL, report_rows(report))
-        self._reporter.tell("published")
+        self._reporter.tell(EventKind.PUBLISHED)
         self._remove(self._inspections.unused())
 
     def _outcome(self, state: RunState | None = None, error: BladeAtlasError | None = None) -> Outcome:
@@ -300,7 +298,7 @@ class _Run:
             error = Cancelled("the run was cancelled", where="run")
         elif ended != RunState.INTERRUPTED and error is None and inspection.error:
             error = error_from_dict(inspection.error)
-        self._reporter.tell("finished", state=ended)
+        self._reporter.tell(EventKind.FINISHED, state=ended)
         done, computed = sum(task.state == TaskState.SUCCEEDED for task in tasks), self._reporter.computed
         return Outcome(
             state=ended,

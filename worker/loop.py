@@ -17,7 +17,7 @@ from functools import partial
 from typing import TypeVar
 
 from core.errors import BladeAtlasError
-from core.states import AttemptOutcome
+from core.states import AttemptOutcome, Queue
 from store.db import Database
 from store.files import ArtifactStore, LocalInputs
 from store.graph import Graph
@@ -44,6 +44,8 @@ T = TypeVar("T")
 _TICK_S = 0.5
 _AFTER_FAILURE_S = 5.0
 """Until runners that something stopped are started again."""
+_CLEAN_EVERY = 6
+"""Rounds of the sweeper between two of the cleaner, which lists whole folders."""
 
 
 class ConcurrencyLimit:
@@ -96,10 +98,6 @@ class ConcurrencyLimit:
         return not self._stopped.is_set() and time.monotonic() - self._last_message >= self._quiet_s
 
 
-_CLEAN_EVERY = 6
-"""Rounds of the sweeper between two of the cleaner, which lists whole folders."""
-
-
 @dataclass(frozen=True)
 class TaskLog:
     """The observer of a server: writes down what happens and passes on that something ended."""
@@ -130,7 +128,7 @@ class WorkerService:
     graph: Graph
     name: str
     """Owner of its leases; unique, or kept over restarts by whoever can vouch that the old process is gone."""
-    queues: Sequence[str] = ("cpu", "gpu")
+    queues: Sequence[str] = tuple(Queue)
     on_end: Callable[[], None] = field(default=lambda: None)
     """Called whenever a task ended: others may have become runnable."""
 
@@ -215,7 +213,7 @@ class LocalRunners:
     heartbeat_s: float = 10.0
     inspection_id: str | None = None
     """Work on this inspection only, and stop when it is over; None = serve all, until stopped."""
-    queues: Sequence[str] = ("cpu", "gpu")
+    queues: Sequence[str] = tuple(Queue)
     failure: BaseException | None = None
     """What ended a thread that should not have ended, e.g. a full disk under the database."""
     _woken: threading.Condition = field(default_factory=threading.Condition)

@@ -33,7 +33,7 @@ class MirroredResults(ResultFolders):
             return manifest
         if self._mark(stage, fingerprint).exists():
             # It was there once, so it was removed: what is forgotten everywhere must not come back from here.
-            self._forget(stage, fingerprint)
+            self._remove_local(stage, fingerprint)
             return None
         self._upload(manifest)
         return manifest
@@ -47,7 +47,7 @@ class MirroredResults(ResultFolders):
 
     def remove(self, stage: str, fingerprint: str) -> None:
         """Remove a result here and in the store, there the manifest first."""
-        self._forget(stage, fingerprint)
+        self._remove_local(stage, fingerprint)
         self._store.remove(self._stored(stage, fingerprint, MANIFEST))
         for path in self._store.list(f"results/{self.relative(stage, fingerprint)}"):
             self._store.remove(path)
@@ -70,7 +70,7 @@ class MirroredResults(ResultFolders):
             folder = path.parent
             name = self.relative(folder.parent.name, folder.name)
             if name not in used and age_s(folder) >= older_than_s:
-                self._forget(folder.parent.name, folder.name)
+                self._remove_local(folder.parent.name, folder.name)
                 removed += 1
         return removed
 
@@ -81,7 +81,7 @@ class MirroredResults(ResultFolders):
         """A file that says: the store has had this result."""
         return self.root / stage / f".mirrored-{fingerprint}"
 
-    def _forget(self, stage: str, fingerprint: str) -> None:
+    def _remove_local(self, stage: str, fingerprint: str) -> None:
         super().remove(stage, fingerprint)
         self._mark(stage, fingerprint).unlink(missing_ok=True)
 

@@ -39,6 +39,9 @@ from store.tables import defect_rows
 from worker.periodic import Periodic
 from worker.results import MANIFEST, ResultFolders
 
+_LIST = "published.json"
+_log = logger("bladeatlas.publisher")
+
 
 @dataclass(frozen=True)
 class Collection:
@@ -160,9 +163,6 @@ def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Fac
     return None
 
 
-_LIST = "published.json"
-
-
 def publish(record: RunRecord, folders: Mapping[str, Path], out: Path, hidden: Path) -> Report:
     """Write the published folder of a run that ended.
 
@@ -217,9 +217,6 @@ def _save(path: Path, published: Mapping[str, Mapping[str, Any]]) -> None:
     part.write_text(json.dumps(published, sort_keys=True, indent=1), encoding="utf-8")
     ArtifactStore(path.parent).put(path.name, part)
     part.unlink()
-
-
-_log = logger("bladeatlas.publisher")
 
 
 @dataclass(frozen=True)

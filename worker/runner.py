@@ -59,7 +59,7 @@ class Held:
     lease: Lease
     progress: float = 0.0
     message: str = ""
-    stop: StopReason = ""
+    stop: StopReason | None = None
 
 
 @dataclass
@@ -129,7 +129,7 @@ class TaskRunner:
             held.progress, held.message = fraction, message
             self.observer.progressed(lease, fraction, message)
 
-        return process.wait(progress, lambda: "interrupted" if self.interrupted.is_set() else held.stop)
+        return process.wait(progress, lambda: StopReason.INTERRUPTED if self.interrupted.is_set() else held.stop)
 
     def _end_log(self, lease: Lease, outcome: AttemptOutcome) -> None:
         try:
@@ -244,7 +244,7 @@ class Heartbeat:
             stopping = self.runner.plan.cancelling({one.lease.inspection_id for one in held})
             for one in held:
                 if one.lease.inspection_id in stopping:
-                    one.stop = "cancelled"
+                    one.stop = StopReason.CANCELLED
 
     def _beat(self, held: Sequence[Held]) -> None:
         lost = self.runner.plan.heartbeat((one.lease, one.progress, one.message) for one in held)
@@ -252,4 +252,4 @@ class Heartbeat:
         for one in held:
             # A task that ended meanwhile is no longer held, and its lease is not lost but over.
             if one.lease.task_id in gone and self.runner.held.get(one.lease.task_id) is one:
-                one.stop = "lost"
+                one.stop = StopReason.LOST

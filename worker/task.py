@@ -23,8 +23,9 @@ import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
-from typing import Any, Literal, NoReturn
+from typing import Any, NoReturn
 
 import psutil
 
@@ -38,8 +39,18 @@ from worker.results import seal
 _POLL_S = 0.2
 _GRACE_S = 2.0
 """Between the request to stop and the kill: nothing of an unfinished task is worth waiting longer for."""
+_PR_SET_PDEATHSIG = 1
+_PROGRESS_EVERY_S = 0.5
 
-StopReason = Literal["", "interrupted", "cancelled", "lost"]
+
+class StopReason(StrEnum):
+    """Why a runner stops a task early."""
+
+    INTERRUPTED = "interrupted"
+    """The runner itself shall end."""
+    CANCELLED = "cancelled"
+    LOST = "lost"
+    """Its lease is no longer held."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +59,7 @@ class Ended:
 
     error: BladeAtlasError | None
     """None when the stage finished and its folder is sealed."""
-    stopped: StopReason
+    stopped: StopReason | None
     """Why it was stopped, when it was."""
     seconds: float
     peak_rss_bytes: int
@@ -92,9 +103,9 @@ class TaskProcess:
         with suppress(BrokenPipeError), self._process.stdin as stream:
             stream.write(json.dumps(spec, allow_nan=False).encode())
 
-    def wait(self, on_progress: Callable[[float, str], None], stop: Callable[[], StopReason]) -> Ended:
+    def wait(self, on_progress: Callable[[float, str], None], stop: Callable[[], StopReason | None]) -> Ended:
         """Listen until the tree has ended; asks `stop` a few times a second whether to end it early."""
-        reason: StopReason = ""
+        reason: StopReason | None = None
         beyond: ResourceError | None = None
         try:
             while not self._over():
@@ -192,10 +203,6 @@ def _kernel_oom_kills() -> int:
             if line.startswith("oom_kill "):
                 return int(line.split()[1])
     return 0
-
-
-_PR_SET_PDEATHSIG = 1
-_PROGRESS_EVERY_S = 0.5
 
 
 def die_with(parent: int, with_signal: signal.Signals) -> None:

@@ -22,7 +22,7 @@ from core.fingerprint import canonical_json
 from core.settings import Settings
 from core.states import InspectionState
 from store.files import ArtifactStore
-from store.inspections import forget_from
+from store.inspections import delete_results_from
 from store.leasing import input_files
 from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state
@@ -57,7 +57,7 @@ async def cancel(request: Request, caller: CallerOf, inspection_id: str) -> Resp
     """Ask to stop; every process of it is gone within 10 s. Asking again changes nothing; 409 once it is over."""
     state = state_of(request)
     await run_in_threadpool(_cancel, state.services, inspection_id, caller.owner)
-    state.watcher.forget(inspection_id)
+    state.watcher.invalidate(inspection_id)
     return await represent(state, inspection_id, caller, status=HTTPStatus.ACCEPTED)
 
 
@@ -80,7 +80,7 @@ async def retry(request: Request, caller: CallerOf, inspection_id: str, body: Re
     """Begin the next attempt: what is unchanged is taken over, parameters may change. 409 while it is active."""
     state = state_of(request)
     await run_in_threadpool(_retry, state.services, inspection_id, caller.owner, body or Retry())
-    state.watcher.forget(inspection_id)
+    state.watcher.invalidate(inspection_id)
     return await represent(state, inspection_id, caller, status=HTTPStatus.ACCEPTED)
 
 
@@ -94,7 +94,9 @@ def _retry(services: Services, inspection_id: str, owner: str, asked: Retry) -> 
     # The place is held first: a retry that is refused must not have cost results.
     with services.admission.place(owner) as place:
         if asked.from_stage != AUTO:
-            _remove_results(services.results, forget_from(services.inspections, inspection_id, asked.from_stage))
+            _remove_results(
+                services.results, delete_results_from(services.inspections, inspection_id, asked.from_stage)
+            )
         services.inspections.reopen(
             inspection_id, input_files(row), settings, ended_only=True, admit=place.use, **changes
         )

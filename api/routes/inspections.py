@@ -66,7 +66,7 @@ async def create(
     state = state_of(request)
     async with _asked(request, state, caller, idempotency_key) as asked:
         inspection_id = await accept(state, asked, request)
-    state.watcher.forget(inspection_id)
+    state.watcher.invalidate(inspection_id)
     return await represent(state, inspection_id, caller, status=HTTPStatus.ACCEPTED)
 
 
@@ -203,7 +203,7 @@ async def delete(request: Request, caller: CallerOf, inspection_id: str) -> Resp
     """Stop it if it is active, and remove it: from now on its id answers 410; files go soon after."""
     state = state_of(request)
     await run_in_threadpool(_delete, state, inspection_id, caller.owner)
-    state.watcher.forget(inspection_id)
+    state.watcher.invalidate(inspection_id)
     return Response(status_code=HTTPStatus.NO_CONTENT)
 
 

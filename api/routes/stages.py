@@ -25,6 +25,26 @@ from store.status import StageStatus, Statuses
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["inspections"])
 
 _MORE_EXAMPLE = {"ended_at": None, "attempts": 4, "reused": 0, "seconds": 84.2, "peak_rss_bytes": 512000000}
+_COLUMNS = (
+    "name",
+    "state",
+    "done",
+    "total",
+    "progress",
+    "started_at",
+    "ended_at",
+    "attempts",
+    "reused",
+    "seconds",
+    "peak_rss_bytes",
+    "workers",
+)
+_LINE: dict[str, Any] = {
+    "task": "coarse/seg_000_0000_0180",
+    "time": "2026-05-04T09:31:10.123+00:00",
+    "event": "attempt_started",
+    "fields": {"attempt": 1},
+}
 
 
 class StageDetail(StageItem):
@@ -43,20 +63,6 @@ class StageDetail(StageItem):
 
 
 StageTable = RootModel[list[StageDetail]]
-_COLUMNS = (
-    "name",
-    "state",
-    "done",
-    "total",
-    "progress",
-    "started_at",
-    "ended_at",
-    "attempts",
-    "reused",
-    "seconds",
-    "peak_rss_bytes",
-    "workers",
-)
 
 
 @router.get(
@@ -98,14 +104,6 @@ def _workers(services: Services, inspection_id: str) -> dict[str, list[str]]:
         for key, owner in session.execute(query):
             found[stage_of(key)].add(owner)
     return {stage: sorted(owners) for stage, owners in found.items()}
-
-
-_LINE: dict[str, Any] = {
-    "task": "coarse/seg_000_0000_0180",
-    "time": "2026-05-04T09:31:10.123+00:00",
-    "event": "attempt_started",
-    "fields": {"attempt": 1},
-}
 
 
 class LogItem(BaseModel):

@@ -19,8 +19,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
-from typing import Literal
 
 from bench.mutate.areas import AREAS, Area
 from bench.mutate.mutants import Mutant, mutants_of
@@ -31,10 +31,21 @@ WORKERS = 2
 """Runs of tests side by side."""
 STARTING_S = 20.0
 """What a run may take beyond its tests: loading the libraries."""
-PATIENCE = 3.0
+TIMES_AS_LONG = 3.0
 """A run that takes this many times as long as without a change does not end: the tests notice that."""
+ROOT = Path(__file__).parents[2]
 
-Fate = Literal["killed", "survived", "unreached", "not run"]
+
+class Fate(StrEnum):
+    """What became of a mutant."""
+
+    KILLED = "killed"
+    """A test failed."""
+    SURVIVED = "survived"
+    UNREACHED = "unreached"
+    """No test runs its lines."""
+    NOT_RUN = "not run"
+    """The time was over."""
 
 
 @dataclass(frozen=True)
@@ -99,13 +110,13 @@ def _fate(
     copy: Path, mutant: Mutant, source: bytes, tests: Sequence[str], reach: Reach, number: int, end: float
 ) -> Fate:
     if not tests:
-        return "unreached"
+        return Fate.UNREACHED
     if time.monotonic() > end:
-        return "not run"
+        return Fate.NOT_RUN
     path = copy / mutant.path
     try:
         _write(path, mutant.apply(source), 2 * number)
-        return "survived" if _passes(copy, tests, PATIENCE * reach.time_of(tests) + STARTING_S) else "killed"
+        return Fate.SURVIVED if _passes(copy, tests, TIMES_AS_LONG * reach.time_of(tests) + STARTING_S) else Fate.KILLED
     finally:
         _write(path, source, 2 * number + 1)
 
@@ -139,9 +150,6 @@ def _passes(copy: Path, tests: Sequence[str], limit_s: float) -> bool:
     return code == 0
 
 
-ROOT = Path(__file__).parents[2]
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("area", metavar="AREA", help=f"one of {', '.join(AREAS)}")
@@ -157,15 +165,16 @@ def command(arguments: argparse.Namespace) -> None:
         raise BadInput(f"unknown area '{arguments.area}'; known: {', '.join(AREAS)}", where="AREA")
     start = time.monotonic()
     drawn = draw(ROOT, area, arguments.number, arguments.seed)
-    fates: Counter[str] = Counter()
+    fates: Counter[Fate] = Counter()
     with tempfile.TemporaryDirectory(prefix="mutate-") as work:
         for verdict in judge(ROOT, Path(work), area, drawn, 60 * arguments.minutes):
             fates[verdict.fate] += 1
-            if verdict.fate != "killed":
+            if verdict.fate != Fate.KILLED:
                 print(f"{verdict.fate}: {verdict.text}", flush=True)
-    judged = len(drawn) - fates["not run"]
+    judged = len(drawn) - fates[Fate.NOT_RUN]
     print(
-        f"{arguments.area}: {fates['killed']} of {judged} killed ({fates['killed'] / max(judged, 1):.0%}), "
-        f"{fates['survived']} survived, {fates['unreached']} on lines that no test runs, {fates['not run']} not run; "
+        f"{arguments.area}: {fates[Fate.KILLED]} of {judged} killed ({fates[Fate.KILLED] / max(judged, 1):.0%}), "
+        f"{fates[Fate.SURVIVED]} survived, {fates[Fate.UNREACHED]} on lines that no test runs, "
+        f"{fates[Fate.NOT_RUN]} not run; "
         f"{(time.monotonic() - start) / 60:.1f} min"
     )

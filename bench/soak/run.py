@@ -34,6 +34,7 @@ from worker.results import MANIFEST
 _TRANSFERS = 2
 """Uploads, and as many downloads, in the middle of which the API is killed."""
 _CORE, _TOY = "store.graph:CORE_GRAPH", "bench.soak.toy:GRAPH"
+_CLEANING_S = 90.0
 
 
 @dataclass(frozen=True)
@@ -196,9 +197,6 @@ def _name(job: int) -> str:
     return f"job-{job:02d}"
 
 
-_PATIENCE_S = 90.0
-
-
 def wrong_attempts(database: Database) -> list[str]:
     """Tasks without exactly one accepted attempt, unless a finished result was taken up instead."""
     with database.read() as session:
@@ -216,7 +214,7 @@ def attempts(database: Database) -> dict[str, int]:
 
 def orphans(database: Database, data: Path) -> list[str]:
     """Files of the store that nothing names, once the cleaner had time to remove them."""
-    deadline = time.monotonic() + _PATIENCE_S
+    deadline = time.monotonic() + _CLEANING_S
     while (found := _unknown(database, data / "artifacts")) and time.monotonic() < deadline:
         time.sleep(1.0)
     return found

@@ -68,7 +68,7 @@ class Client:
             body["annotations_upload"] = self.upload(annotations, on_bytes)
         headers = {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
         response = self._answer(lambda: self._http.post("/v1/inspections", json=body, headers=headers))
-        self._transfers.forget(self._server, video, *([annotations] if annotations else []))
+        self._transfers.remove(self._server, video, *([annotations] if annotations else []))
         return _inspection(response)
 
     def get(self, inspection_id: str) -> InspectionInfo:

@@ -44,7 +44,7 @@ class Transfers:
             part.write_text(json.dumps({"url": url, "file": str(path)}), encoding="utf-8")
             part.replace(state)
 
-    def forget(self, server: str, *paths: Path) -> None:
+    def remove(self, server: str, *paths: Path) -> None:
         """These were used, or are gone from the server."""
         for path in paths:
             with suppress(OSError):

@@ -52,7 +52,7 @@ def _known(http: httpx.Client, server: str, path: Path, transfers: Transfers) ->
         return None
     response = http.head(url, headers=_TUS)
     if response.status_code in (404, 410):
-        transfers.forget(server, path)
+        transfers.remove(server, path)
         return None
     raise_problem(response)
     return url

@@ -11,7 +11,7 @@ import ast
 import inspect
 import textwrap
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
 from itertools import pairwise
 from types import NoneType, UnionType
@@ -67,12 +67,13 @@ def _docstrings(declared: type[Any]) -> dict[str, str]:
 
 def _own_docstrings(declared: type[Any]) -> dict[str, str]:
     """The texts below the fields of a class; Python keeps none of them, so they are read from its source."""
-    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(declared))).body
-    assert isinstance(tree, ast.ClassDef)  # the source of a class is one
     found = {}
-    for field, below in pairwise(tree.body):
-        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(below, ast.Expr):
-            text = below.value
-            if isinstance(text, ast.Constant) and isinstance(text.value, str):
-                found[field.target.id] = " ".join(text.value.split())
+    for kind in reversed([one for one in declared.__mro__ if is_dataclass(one)]):
+        (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
+        assert isinstance(tree, ast.ClassDef)  # the source of a class is one
+        for field, below in pairwise(tree.body):
+            if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(below, ast.Expr):
+                text = below.value
+                if isinstance(text, ast.Constant) and isinstance(text.value, str):
+                    found[field.target.id] = " ".join(text.value.split())
     return found

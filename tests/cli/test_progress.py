@@ -8,19 +8,19 @@ import json
 from rich.console import Console
 
 from cli.progress import PLAIN_INTERVAL_S, JsonDisplay, LiveDisplay, PlainDisplay, duration
-from worker.events import Event
+from worker.events import Event, EventKind
 
 EVENTS = [
-    Event("opened", 0.0, total=4),
-    Event("started", 0.0, stage="probe", key="probe", total=1),
-    Event("ended", 0.1, 50.0, "probe", "probe", "succeeded", 1, 1, 1.0, 2.5),
-    Event("ended", 0.4, 30.0, "coarse", "coarse/a", "failed", 1, 2, 0.5, 4.0),
-    Event("ended", 0.7, 10.0, "coarse", "coarse/b", "succeeded", 2, 2, 1.0, 4.0),
-    Event("retry", 0.7, 10.0, "fuse", "fuse", message="worker lost"),
-    Event("ended", 0.9, 1.0, "fuse", "fuse", "succeeded", 1, 1, 1.0, None, True),
-    Event("ended", 0.95, 1.0, "mesh", "mesh", "skipped", 1, 1, 1.0, 0.0),
-    Event("ended", 0.95, 1.0, "mesh", "mesh", "skipped", 1, 1, 1.0, 0.0),
-    Event("finished", 1.0, state="succeeded"),
+    Event(EventKind.OPENED, 0.0, total=4),
+    Event(EventKind.STARTED, 0.0, stage="probe", key="probe", total=1),
+    Event(EventKind.ENDED, 0.1, 50.0, "probe", "probe", "succeeded", 1, 1, 1.0, 2.5),
+    Event(EventKind.ENDED, 0.4, 30.0, "coarse", "coarse/a", "failed", 1, 2, 0.5, 4.0),
+    Event(EventKind.ENDED, 0.7, 10.0, "coarse", "coarse/b", "succeeded", 2, 2, 1.0, 4.0),
+    Event(EventKind.RETRY, 0.7, 10.0, "fuse", "fuse", message="worker lost"),
+    Event(EventKind.ENDED, 0.9, 1.0, "fuse", "fuse", "succeeded", 1, 1, 1.0, None, True),
+    Event(EventKind.ENDED, 0.95, 1.0, "mesh", "mesh", "skipped", 1, 1, 1.0, 0.0),
+    Event(EventKind.ENDED, 0.95, 1.0, "mesh", "mesh", "skipped", 1, 1, 1.0, 0.0),
+    Event(EventKind.FINISHED, 1.0, state="succeeded"),
 ]
 
 
@@ -43,7 +43,9 @@ def test_plain_lines_come_now_and_then_in_a_long_stage() -> None:
     display = PlainDisplay(stream, clock=lambda: now[0])
     for step in range(10):
         now[0] = step * PLAIN_INTERVAL_S / 3
-        display.show(Event("progress", step / 10, 60.0, "features", "features/000", total=3, stage_fraction=step / 10))
+        display.show(
+            Event(EventKind.PROGRESS, step / 10, 60.0, "features", "features/000", total=3, stage_fraction=step / 10)
+        )
     assert stream.getvalue().splitlines() == [
         "[ 30%] features 30%  (about 1 min 00 s left)",
         "[ 60%] features 60%  (about 1 min 00 s left)",

@@ -73,7 +73,7 @@ def test_a_purged_inspection_leaves_its_row_and_what_others_use(retention: Reten
     retention.purge("two")
     assert retention.inputs_in_use() == set()
     names = unused(retention)
-    assert len(names) == len(retention.forget_unused(names)) == 6
+    assert len(names) == len(retention.delete_unused(names)) == 6
     assert retention.known_fingerprints() == set()
 
 
@@ -84,7 +84,7 @@ def test_what_a_new_plan_took_up_meanwhile_is_not_forgotten(retention: Retention
         mark(retention, name, deleted_at=later(retention, 0))
         retention.purge(name)
     Inspections(retention.db, GRAPH).create("three", FILES, make_settings(), "")
-    assert retention.forget_unused(every) == []
+    assert retention.delete_unused(every) == []
 
 
 def test_results_of_the_parameters_before_are_not_forgotten(retention: Retention) -> None:
@@ -95,7 +95,7 @@ def test_results_of_the_parameters_before_are_not_forgotten(retention: Retention
         every = list(session.scalars(select(Result.fingerprint)))
     inspections.reopen("one", FILES, make_settings(options={"timeline.radius_fraction": 0.5}))
     finish(retention.db)
-    assert retention.forget_unused(every) == []
+    assert retention.delete_unused(every) == []
 
 
 def test_files_at_work_are_those_of_unfinished_or_unpublished_inspections(retention: Retention) -> None:

@@ -271,11 +271,11 @@ def test_only_results_of_this_and_the_previous_parameters_are_kept(plan: Plan) -
     assert len(known) == 5 + 3  # the default trim is 6.0: its result was there
     unused = inspections(plan).unused()
     assert [known[name].split("/")[0] for name in unused] == ["join"]
-    inspections(plan).forget(unused)
+    inspections(plan).delete_results(unused)
     assert inspections(plan).unused() == []
 
 
-def test_forgetting_from_a_stage_names_all_that_follow(plan: Plan) -> None:
+def test_deleting_from_a_stage_names_all_that_follow(plan: Plan) -> None:
     finish_all(plan)
     assert inspections(plan).stages_from(ID, "join") == {"join", "last"}
     assert inspections(plan).stages_from(ID, "part") == {"part", "join", "last"}

@@ -10,7 +10,7 @@ from sqlalchemy import update
 from core.errors import BadInput
 from core.settings import make_settings
 from store.db import Database
-from store.inspections import Inspections, forget_from, mark_deleted
+from store.inspections import Inspections, delete_results_from, mark_deleted
 from store.listing import Filter, count_active, list_inspections
 from store.models import Inspection
 from store.monitoring import count_all
@@ -147,11 +147,11 @@ def test_timings_are_learnt_from_inspections_that_came_to_an_end(db: Database) -
     assert plan_eta(fresh, GRAPH, {}, workers=1) is None
 
 
-def test_forgetting_takes_the_stage_and_all_that_follow(db: Database) -> None:
+def test_deleting_takes_the_stage_and_all_that_follow(db: Database) -> None:
     create(db, "one")
     work(db, "one")
     inspections = Inspections(db, GRAPH)
-    paths = forget_from(inspections, "one", "join")
+    paths = delete_results_from(inspections, "one", "join")
     assert sorted(path.split("/")[0] for path in paths) == ["join", "last"]
     assert {path.split("/")[0] for path in inspections.known_results().values()} == {"split", "part"}
     inspections.reopen("one", FILES, make_settings(), ended_only=True, label="again")

@@ -156,7 +156,7 @@ def test_a_result_whose_commit_was_cut_off_is_adopted(place: Workplace) -> None:
     place.started()
     database = open_sqlite(place.out / ".bladeatlas" / "plan.db")
     inspections = Inspections(database)
-    inspections.forget(list(inspections.known_results())[:3])
+    inspections.delete_results(list(inspections.known_results())[:3])
     database.close()
     assert place.run().computed == 0
     assert place.started() == []

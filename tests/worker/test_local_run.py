@@ -90,7 +90,7 @@ def test_the_callers_names_stand_beside_the_result_and_cost_no_work(place: Workp
     assert place.started() == []
 
 
-def test_from_stage_forgets_that_stage_and_all_that_follow(place: Workplace) -> None:
+def test_from_stage_deletes_that_stage_and_all_that_follow(place: Workplace) -> None:
     place.run()
     place.started()
     outcome = place.run(from_stage="join")

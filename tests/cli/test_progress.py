@@ -43,7 +43,8 @@ def test_plain_lines_come_now_and_then_in_a_long_stage() -> None:
     display = PlainDisplay(stream, clock=lambda: now[0])
     for step in range(10):
         now[0] = step * PLAIN_INTERVAL_S / 3
-        display.show(
+        event = Event(EventKind.PROGRESS, step / 10, 60.0, "features", "features/000", total=3, stage_fraction=step / 10)
+        display.show(event)
             Event(EventKind.PROGRESS, step / 10, 60.0, "features", "features/000", total=3, stage_fraction=step / 10)
         )
     assert stream.getvalue().splitlines() == [

@@ -20,11 +20,11 @@ from core.video.probe import probe_video
 
 def command(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
-    options = input_options(parsed.assignments)
+    options = input_options(parsed.assignments, parsed.fps)
     annotations = load_annotations(parsed.annotations)
     placed, video = None, None
     if parsed.video:
-        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream)
+        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream, fps=options.fps)
         placed, video = place(annotations, table, options.time_convention), table.info
     summary = summarise(annotations, placed)
     if parsed.json:
@@ -37,9 +37,10 @@ def command(parsed: argparse.Namespace) -> int:
     return 0
 
 
-def input_options(assignments: list[str]) -> InputSettings:
+def input_options(assignments: list[str], fps: float | None = None) -> InputSettings:
     """Options of the input as ``NAME=VALUE``; others are refused, because nothing here would read them."""
-    options = dict(parse_assignment(one) for one in assignments)
+    options: dict[str, Any] = {} if fps is None else {"input.fps": fps}
+    options |= (parse_assignment(one) for one in assignments)
     for name in options:
         if not name.startswith("input."):
             raise BadInput(f"'{name}' says nothing about the input; check takes only input.* options", where="--set")

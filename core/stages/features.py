@@ -28,12 +28,14 @@ def run(task: StageTask) -> StageResult:
     extract = make_extractor(settings, task.threads)
     mask_of = _blade_masks(task, frames) if settings.blade_masks_only else None
     moving = ~read_mask(frames / "still.png")
+    damaged = set(json.loads((frames / "damaged.json").read_text(encoding="utf-8")))
     counts = []
     for done, index in enumerate(range(start, end)):
         task.report(done, end - start, f"frame {index}")
         features = extract(read_image(frames / "images" / f"{index:04d}.jpg"))
         mask = mask_of(index) if mask_of else None
-        features = inside_mask(features, moving if mask is None else moving & mask)
+        usable = np.zeros_like(moving) if index in damaged else moving
+        features = inside_mask(features, usable if mask is None else usable & mask)
         write_features(task.out / feature_name(index), features)
         counts.append(len(features))
     task.report(1, 1)

@@ -18,7 +18,11 @@ from core.video.table import FrameTable
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `images/`, `frames.json`, `crop.json` and `still.png`; `BadInput` for an impossible interval or region."""
+    """Write `images/`, `frames.json`, `damaged.json`, `crop.json` and `still.png`.
+
+    Raises:
+        BadInput: an impossible interval or region.
+    """
     settings = task.settings
     table = FrameTable.read(task.input("probe"))
     detections = load_detections(task.input("annotations"))
@@ -53,16 +57,21 @@ def run(task: StageTask) -> StageResult:
         for frame in chosen
     ]
     shown = sorted(chosen, key=lambda frame: frame.source_index)
-    still = find_still([images / image_name(frame.index) for frame in shown])
+    broken = set(table.info.damaged_pictures)
+    damaged = [frame.index for frame in chosen if frame.source_index in broken]
+    sound = [frame for frame in shown if frame.source_index not in broken] or shown
+    still = find_still([images / image_name(frame.index) for frame in sound])
     flags = list(interval.flags)
     if settings.frames.mask_still and still.share:
         flags.append(Flag("still_pixels_masked", Severity.INFO, still.share, 0.0, f"{still.frames} frames compared"))
     write_mask(task.out / "still.png", still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
     (task.out / "frames.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    (task.out / "damaged.json").write_text(json.dumps(damaged) + "\n", encoding="utf-8")
     (task.out / "crop.json").write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")
     return StageResult(
         {
             "n_frames": len(chosen),
+            "n_damaged": len(damaged),
             "n_search": sum(frame.role != "added" for frame in chosen),
             "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
             "source_width": crop.source_width,

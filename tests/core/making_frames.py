@@ -14,7 +14,13 @@ from core.video.still import write_mask
 SIZE = (200, 160)
 
 
-def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] | None = None, step_px: int = 6) -> Path:
+def frames_folder(
+    folder: Path,
+    roles: Sequence[str],
+    times_s: Sequence[float] | None = None,
+    step_px: int = 6,
+    damaged: Sequence[int] = (),
+) -> Path:
     """Write images, ``frames.json`` and ``crop.json``; frame i shows the wall from `step_px` x its time."""
     times = list(times_s) if times_s is not None else [float(i) for i in range(len(roles))]
     rng = np.random.default_rng(0)
@@ -33,4 +39,5 @@ def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] |
     crop = {"x0": 10, "y0": 20, "x1": 10 + SIZE[0], "y1": 20 + SIZE[1], "source_width": 250, "source_height": 200}
     (folder / "crop.json").write_text(json.dumps(crop), encoding="utf-8")
     write_mask(folder / "still.png", np.zeros((crop["y1"] - crop["y0"], crop["x1"] - crop["x0"]), bool))
+    (folder / "damaged.json").write_text(json.dumps(list(damaged)), encoding="utf-8")
     return folder

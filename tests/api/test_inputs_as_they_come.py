@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
 
-INPUTS = Path(__file__).parents[1] / "data" / "inputs"
+from tests.inputs import INPUTS
 
 
 @pytest.mark.parametrize(

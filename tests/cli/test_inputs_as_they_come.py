@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from cli.main import main
-
-INPUTS = Path(__file__).parents[1] / "data" / "inputs"
+from tests.inputs import INPUTS
 
 
 def said(capsys: pytest.CaptureFixture[str], *words: str, expect: int = 0) -> str:

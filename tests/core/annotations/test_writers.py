@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,9 +18,10 @@ from core.annotations.convention import Fitted, fit_convention
 from core.video.decode import iter_frames
 from core.video.probe import probe_video
 from core.video.table import FrameTable
+from tests.core.making_films import ffmpeg, ffprobe_frames
 from tests.core.making_videos import every_ms, make_video
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 VARIABLE = [0, 33, 66, 99, 196, 229, 262, 295, 392, 500, 533, 566, 640, 673, 706, 739, 836, 869, 902, 1000]
 DROPPED = [40 * i for i in range(40) if i % 7 != 3]
 
@@ -148,8 +148,7 @@ MAKES = {
 def test_ffprobe_lists_the_frames_of_the_table(tmp_path: Path, name: str) -> None:
     source = ["-f", "lavfi", "-i", "testsrc=size=128x96:rate=30:duration=1.5", "-bf", "2", "-c:v", "mpeg4"]
     path = tmp_path / name
-    subprocess.run(["ffmpeg", "-v", "error", *source, *MAKES[name], path.as_posix()], check=True)
-    listed = frames_of_ffprobe(path)
+    listed = ffprobe_frames(ffmpeg(path, *source, *MAKES[name])).times
     film = film_of(path)
     for keys in (listed, [f"{i / film.fps:.6f}" for i in range(len(film.msec))], [f"{m:.0f}" for m in film.msec]):
         fitted = fit(film, keys)
@@ -161,11 +160,4 @@ def test_ffprobe_lists_the_frames_of_the_table(tmp_path: Path, name: str) -> Non
 @pytest.mark.parametrize("name", ["m96.avi", "m96_drop15.avi"])
 def test_empty_chunks_are_no_frames(name: str) -> None:
     table = probe_video(INPUTS / name)
-    assert [f"{float(row.pts * table.info.time_base):.6f}" for row in table.rows] == frames_of_ffprobe(INPUTS / name)
-
-
-def frames_of_ffprobe(path: Path) -> list[str]:
-    """Presentation times to six decimals, as ffprobe prints them."""
-    asked = ["-select_streams", "v:0", "-show_entries", "frame=pts_time", "-of", "json"]
-    told = subprocess.run(["ffprobe", "-v", "error", *asked, str(path)], capture_output=True, text=True, check=True)
-    return [frame["pts_time"] for frame in json.loads(told.stdout)["frames"]]
+    assert [f"{float(row.pts * table.info.time_base):.6f}" for row in table.rows] == ffprobe_frames(INPUTS / name).times

@@ -13,8 +13,8 @@ from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import annotations, probe
 from tests.core.making_record import full_record
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 VIDEO = INPUTS / "m96.avi"
 
 

@@ -16,8 +16,8 @@ import pytest
 from core.errors import BadInput
 from core.video.table import FrameTable
 from tests.core.test_bad_input import run_stages
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 DETECTION = {"detections": [{"label": "dent", "score": 0.9, "bbox": [0.2, 0.2, 0.4, 0.4]}]}
 
 

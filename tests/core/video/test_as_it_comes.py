@@ -18,8 +18,8 @@ from core.video.decode import VideoReader, iter_frames
 from core.video.probe import probe_video
 from tests.core.making_films import SAMPLE, ffmpeg, ffmpeg_pixels, ffprobe_frames, film
 from tests.core.making_videos import cut_to, every_ms, make_video
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 ROOT = Path(__file__).parents[3]
 
 X264 = ("-c:v", "libx264", "-preset", "ultrafast")

@@ -67,7 +67,6 @@ class PictureReader:
         self.losses: list[Loss] = []
         self.faults: list[str] = []
         self._complaints = Complaints()
-        self._decoders: dict[str, Any] = {}
 
     def __enter__(self) -> PictureReader:
         return self
@@ -123,24 +122,18 @@ class PictureReader:
         if size is None:
             return None
         require_pixels(*size, name, self._max_pixels)
-        decoder = self._decoder(_codec_of(name))
+        # A decoder of its own for each: some take a further picture for changes of the one before.
+        decoder = av.CodecContext.create(_codec_of(name), "r")
+        decoder.thread_type = "NONE"
         with listened() as said:
             try:
                 frames = decoder.decode(av.Packet(data)) or decoder.decode(None)
             except av.error.FFmpegError:
                 frames = []
-            decoder.flush_buffers()
         self._complaints.heard(number, said)
         if not frames or (frames[0].width, frames[0].height) != size:
             return None
         return frames[0]
-
-    def _decoder(self, codec: str) -> Any:
-        if codec not in self._decoders:
-            made = av.CodecContext.create(codec, "r")
-            made.thread_type = "NONE"
-            self._decoders[codec] = made
-        return self._decoders[codec]
 
 
 def _codec_of(name: str) -> str:

@@ -57,7 +57,7 @@ def flags_of(info: VideoInfo) -> list[Flag]:
     if info.times_from != "file":
         severity = Severity.WARNING if info.times_from == "assumed" else Severity.INFO
         where = f"{float(info.average_rate):g} frames/s, {RATE_FROM[info.times_from]}"
-        flags.append(Flag("times_made_up", severity, float(info.average_rate), None, where))
+        flags.append(Flag("times_made_up", severity, where=where))
     if info.interlaced_frames:
         where = f"{info.interlaced_frames} of {info.n_frames} frames"
         flags.append(Flag("interlaced", Severity.INFO, float(info.interlaced_frames), 0.0, where))

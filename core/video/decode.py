@@ -350,7 +350,7 @@ def _starts_again(packet: Any, before: Any) -> bool:
 
 
 def iter_frames(path: Path) -> Iterator[tuple[int, int, float, NDArray[np.uint8]]]:
-    """Every decodable frame as (index, pts, time_s, rgb): seconds from the first frame, (h, w, 3) uint8 as shown.
+    """Every decodable frame as (index, pts, time_s, rgb): seconds from the first frame, (h, w, 3) uint8 as turned.
 
     The numbering is that of the frame table. Raises `BadInput` when the file is no video.
     """

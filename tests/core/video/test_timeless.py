@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from core.errors import BadInput
-from core.video.formats import TIMELESS, VIDEO_FORMATS
 from core.video.probe import probe_video
 from tests.core.making_films import SAMPLE, SMALL, ffmpeg, ffmpeg_pixels, film
 from tests.core.making_videos import cut_to
@@ -55,12 +54,6 @@ def test_a_file_with_times_takes_no_rate(name: str) -> None:
         probe_video(INPUTS / name, fps=12)
     assert (caught.value.code, caught.value.where) == ("fps_not_needed", "input.fps")
     assert probe_video(INPUTS / name).info.times_from == "file"
-
-
-def test_formats_are_listed_once() -> None:
-    names = [name for one in VIDEO_FORMATS for name in one.demuxers]
-    assert len(set(names)) == len(names)
-    assert {"h264", "hevc", "mjpeg", "mpjpeg", "obu"} <= TIMELESS < set(names)
 
 
 SLOW = ("-vf", "setpts=N/5.6/TB", "-r", "5.6", "-c:v", "wmv2")

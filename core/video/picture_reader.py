@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import io
-import warnings
+import re
 from collections.abc import Iterator
 from fractions import Fraction
 from types import TracebackType
 from typing import Any
 
 import av
-import numpy as np
-from PIL import Image
 
 from core.errors import BadInput
 from core.video.complaints import Complaints, listened
@@ -23,6 +20,9 @@ from core.video.orientation import Orientation
 from core.video.pictures import PictureFiles
 from core.video.soundness import Loss
 from core.video.table import TimesFrom
+
+_TOO_LARGE = re.compile(r"Picture size (\d+)x(\d+) exceeds")
+"""What FFmpeg says of a picture whose header states more pixels than its decoder may make."""
 
 
 class PictureReader:
@@ -118,36 +118,22 @@ class PictureReader:
     def _decoded(self, name: str, number: int) -> Any:
         """FFmpeg's frame of a picture; None when there is none."""
         data = self._pictures.read(name)
-        size = _size_of(data)
-        if size is None:
-            return None
-        require_pixels(*size, name, self._max_pixels)
         # A decoder of its own for each: some take a further picture for changes of the one before.
         decoder = av.CodecContext.create(_codec_of(name), "r")
         decoder.thread_type = "NONE"
+        decoder.options = {"max_pixels": str(self._max_pixels)}
         with listened() as said:
             try:
                 frames = decoder.decode(av.Packet(data)) or decoder.decode(None)
-            except av.error.FFmpegError:
+            except (av.error.FFmpegError, ValueError):
                 frames = []
+        for _, _, text in said:
+            large = _TOO_LARGE.match(text)
+            if large:
+                require_pixels(int(large[1]), int(large[2]), name, self._max_pixels)
         self._complaints.heard(number, said)
-        if not frames or (frames[0].width, frames[0].height) != size:
-            return None
-        return frames[0]
+        return frames[0] if frames else None
 
 
 def _codec_of(name: str) -> str:
     return PICTURE_CODECS[name.rpartition(".")[2].lower()]
-
-
-def _size_of(data: bytes) -> tuple[int, int] | None:
-    """Width and height as the header of a picture states them; None when it is no picture."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            with Image.open(io.BytesIO(data), formats=("PNG", "JPEG", "TIFF", "BMP")) as picture:
-                return picture.size
-    except Image.DecompressionBombError:
-        return int(np.iinfo(np.int32).max), 1
-    except (OSError, ValueError, SyntaxError):
-        return None

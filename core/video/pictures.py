@@ -74,13 +74,15 @@ def find_pictures(path: Path) -> PictureFiles | None:
         BadInput: `no_pictures` or `not_a_file` when there are none, `pictures_unclear` when they lie in several
             folders of a zip, `too_many_frames`.
     """
-    if path.is_dir():
+    try:
+        folder, file = path.is_dir(), path.is_file()
+    except OSError:
+        return None  # a name that no file can have
+    if folder:
         return _of_folder(path)
-    if _PATTERN.search(path.name) and not path.exists():
+    if not file and _PATTERN.search(path.name):
         return _of_pattern(path)
-    if path.is_file() and _is_zip(path):
-        return _of_zip(path)
-    return None
+    return _of_zip(path) if file and _is_zip(path) else None
 
 
 def digest_of_video(path: Path) -> str:
@@ -171,14 +173,14 @@ def _is_seen(name: str) -> bool:
 
 
 def _in_order(names: Iterable[str], source: str) -> tuple[str, ...]:
-    found = sorted(names, key=natural_key)
+    found = list(names)
     if len(found) > MAX_PICTURES:
         message = f"'{source}' holds {len(found):,} pictures; at most {MAX_PICTURES:,} are read"
         raise BadInput(message, code="too_many_frames", where="video")
     if any(len(name.encode()) > _MAX_NAME for name in found):
         message = f"a picture of '{source}' has a name of more than {_MAX_NAME} bytes"
         raise BadInput(message, code="unreadable_file", where="video")
-    return tuple(found)
+    return tuple(sorted(found, key=natural_key))
 
 
 def _is_zip(path: Path) -> bool:

@@ -241,6 +241,16 @@ def test_large_pictures_are_refused_from_their_header(tmp_path: Path) -> None:
     assert caught.value.code == "too_many_pixels"
 
 
+def test_a_name_that_no_file_can_have_is_one_clear_error(tmp_path: Path) -> None:
+    for name in ("x" * 300, "x" * 300 + "%04d.png"):
+        with pytest.raises(BadInput, match="name cannot be used: File name too long"):
+            probe_video(tmp_path / name, fps=10)
+    with zipfile.ZipFile(tmp_path / "long.zip", "w") as packed:
+        packed.writestr("9" * 5000 + ".png", b"")
+    with pytest.raises(BadInput, match="a name of more than 255 bytes"):
+        probe_video(tmp_path / "long.zip", fps=10)
+
+
 def test_a_file_with_another_kind_of_content_is_no_zip(tmp_path: Path) -> None:
     assert find_pictures(make_video(tmp_path / "a.mp4", every_ms(40, 3))) is None
     assert find_pictures(tmp_path / "missing.mp4") is None

@@ -48,6 +48,10 @@ class Complaints:
         if texts:
             self._of_packet[packet] = texts
 
+    def of(self, packet: int | None) -> bool:
+        """Whether something was said of a packet."""
+        return packet is not None and int(packet) in self._of_packet
+
     def came(self, frame: int, packet: int | None) -> None:
         """Note that a frame came of a packet; None is the latest one."""
         self._frames += 1

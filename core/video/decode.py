@@ -40,6 +40,9 @@ which a recorder dropped, and that of MP4 those which an edit list cuts away.)""
 
 _UNMARKED = frozenset({"mjpeg", "rawvideo", "ffv1", "huffyuv", "ffvhuff", "utvideo", "v210", "qtrle"})
 """Codecs that do not mark interlaced pictures; there the container's field order counts."""
+_COMPLAINING = frozenset({"gif", "ffv1", "msmpeg4v1", "msmpeg4v2", "msmpeg4v3"})
+"""Codecs whose pictures refer to others and whose decoders tell of damage in messages only. (Those of H.264, HEVC and
+MPEG mark their frames, and report errors of sound streams, too.)"""
 _FIELD_ORDERS = {2: "tff", 3: "bff", 4: "bff", 5: "tff"}
 """FFmpeg's AVFieldOrder, as its filter `setfield` names the field that is shown first."""
 _SANE_RATES = (Fraction(1, 100), Fraction(1000))
@@ -124,7 +127,8 @@ class VideoReader:
         self.codec = str(codec.name)
         self.field_order = _FIELD_ORDERS.get(int(codec.field_order), "") if self.codec in _UNMARKED else ""
         self.interlaced_frames = 0
-        self._complaints = Complaints() if codec.codec.intra_only else None
+        self._stands_alone = bool(codec.codec.intra_only)
+        self._complaints = Complaints() if self._stands_alone or self.codec in _COMPLAINING else None
         self.faults: list[str] = []
         self.orientation = Orientation()
         self._clock = PresentationClock(self._time_base, self.declared_rate)
@@ -165,7 +169,7 @@ class VideoReader:
     @property
     def damaged(self) -> tuple[int, ...]:
         """After the last frame: those of the frames whose decoder complained of their picture."""
-        return self._complaints.frames() if self._complaints else ()
+        return self._complaints.frames() if self._complaints and self._stands_alone else ()
 
     def frames(self) -> Iterator[DecodedFrame]:
         """Frames in presentation order; damaged ones are left out and noted in `losses` and `faults`."""
@@ -187,7 +191,7 @@ class VideoReader:
                 pts = self._clock.time(self._stamp(frame), duration)
             self._video_end = pts + duration
             self.interlaced_frames += bool(frame.interlaced_frame or self.field_order)
-            if self._complaints:
+            if self._complaints and self._stands_alone:
                 self._complaints.came(index, frame.opaque)
             yield DecodedFrame(index, pts, bool(frame.key_frame), frame, self.orientation)
         self._clock.finish()
@@ -207,8 +211,12 @@ class VideoReader:
         for frame in self._decode():
             if frame is not None:
                 self._require_pixels(frame.width, frame.height)
-                self._sound.came(frame, duration)
+                self._sound.came(frame, duration, broken=self._is_complained_of(frame))
             yield from self._sound.sound()
+
+    def _is_complained_of(self, frame: Any) -> bool:
+        """Whether the decoder complained of a frame that others refer to."""
+        return self._complaints is not None and not self._stands_alone and self._complaints.of(frame.opaque)
 
     def _decode(self) -> Iterator[Any]:
         """Frames of the stream as the decoder gives them; None once it holds none back any more."""

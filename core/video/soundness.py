@@ -93,14 +93,20 @@ class SoundFrames:
         self.ended()
         self._break(packet, "a packet does not decode")
 
-    def came(self, frame: Any, duration: Fraction) -> None:
-        """A frame came out; `duration` is what a frame of this stream lasts, in units of pts."""
+    def came(self, frame: Any, duration: Fraction, *, broken: bool = False) -> None:
+        """A frame came out.
+
+        Args:
+            frame: of FFmpeg.
+            duration: what a frame of this stream lasts, in units of pts.
+            broken: there is more than the frame's own mark to tell that it is.
+        """
         number = next(iter(self._pending), 0) if frame.opaque is None else int(frame.opaque)
         packet = self._pending.pop(number, Sent(number, frame.pts))
         if frame.interlaced_frame:
             self._drop_second_field(packet, duration)
         self._miss(self._overdue(number, frame))
-        if frame.is_corrupt:
+        if frame.is_corrupt or broken:
             self._break(packet, "errors in a picture")
         elif self._first is None and (frame.key_frame or not self._broken):
             self._first = packet

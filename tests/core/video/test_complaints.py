@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+from itertools import islice
 from pathlib import Path
 
+import av
 import av.logging
 import numpy as np
 import pytest
@@ -70,6 +72,32 @@ def test_they_are_the_ones_that_look_unlike_their_neighbours() -> None:
     """Half of the picture is one grey."""
     flat = [i for i, _, _, rgb in iter_frames(INPUTS / "mjpeg_half.avi") if np.ptp(rgb[-40:].astype(int)) < 30]
     assert flat == list(range(20, 25))
+
+
+@pytest.mark.tool("ffmpeg")
+@pytest.mark.parametrize(
+    ("name", "codec"),
+    [
+        ("a.gif", ()),
+        ("a.avi", ("-c:v", "msmpeg4v2", "-g", "12")),
+        ("a.mkv", ("-c:v", "ffv1", "-level", "3", "-slicecrc", "1", "-slices", "4", "-g", "12")),
+    ],
+)
+def test_what_refers_to_a_picture_that_is_complained_of_is_left_out(
+    name: str, codec: tuple[str, ...], tmp_path: Path
+) -> None:
+    path = film(tmp_path / name, *codec)
+    whole = {row.pts: row.sha256 for row in probe_video(path).rows}
+    with av.open(str(path)) as container:
+        packet = next(islice((one for one in container.demux(video=0) if one.size), 26, None))
+        at = path.read_bytes().index(bytes(packet)[-200:-100]) if name == "a.mkv" else packet.pos + packet.size // 3
+    data = bytearray(path.read_bytes())
+    data[at : at + 12] = bytes(np.random.default_rng(0).integers(0, 256, 12, np.uint8))
+    path.write_bytes(data)
+    part = probe_video(path, allow_truncated=True)
+    assert "errors in a picture" in part.info.damage[0]
+    assert 12 <= part.info.n_frames < 48
+    assert all(whole[row.pts] == row.sha256 for row in part.rows)
 
 
 @pytest.mark.tool("ffmpeg")

@@ -72,6 +72,18 @@ def test_a_broken_frame_takes_those_along_that_were_decoded_after_it():
     assert decoder.end() == [(1, 3)]
 
 
+def test_a_frame_of_which_the_decoder_complains_counts_as_broken():
+    decoder = Decoder()
+    decoder.send(0, 1, 2)
+    decoder.come(Frame(0, 0, key_frame=True))
+    decoder.sound.came(Frame(1, 1), Fraction(1), broken=True)
+    decoder.come(Frame(2, 2))
+    decoder.send(3)
+    decoder.come(Frame(3, 3, key_frame=True))
+    assert decoder.shown == [0, 3]
+    assert decoder.end() == [(1, 2)]
+
+
 def test_a_frame_that_never_comes_is_missed_after_the_longest_delay_a_decoder_has():
     decoder = Decoder()
     decoder.send(0, 1)

@@ -77,7 +77,7 @@ WRITERS: dict[str, Callable[[Film, int], str]] = {
     "FFmpeg": lambda film, i: f"{float(film.table.rows[i].pts * film.table.info.time_base):.6f}",
     "player, 2 decimals": lambda film, i: cut(film.table.time(i), 2),
     "player, 3 decimals": lambda film, i: cut(film.table.time(i), 3),
-    "player, clock": lambda film, i: f"00:00:0{cut(film.table.time(i), 3)}",
+    "player, clock": lambda film, i: f"00:00:{cut(film.table.time(i), 3):0>6}",
 }
 FROM_ONE = {"OpenCV, frames read / rate", "numbers from 1", "Label Studio"}
 
@@ -161,3 +161,42 @@ def test_ffprobe_lists_the_frames_of_the_table(tmp_path: Path, name: str) -> Non
 def test_empty_chunks_are_no_frames(name: str) -> None:
     table = probe_video(INPUTS / name)
     assert [f"{float(row.pts * table.info.time_base):.6f}" for row in table.rows] == ffprobe_frames(INPUTS / name).times
+
+
+TIMELESS = [
+    "OpenCV, frames before / rate",
+    "OpenCV, frames read / rate",
+    "OpenCV, not rounded",
+    "CVAT",
+    "numbers from 1",
+]
+
+
+@pytest.mark.parametrize("writer", [*TIMELESS, "Label Studio"])
+def test_keys_of_a_raw_stream_by_the_rate_that_opencv_assumes(writer: str) -> None:
+    """12 frames/s by the stream's own header; OpenCV says 25, and gives every frame the time 0."""
+    film = film_of(INPUTS / "raw.h264")
+    assert (film.fps, film.table.info.average_rate, set(film.msec)) == (25, 12, {0.0})
+    fitted = fit(film, [WRITERS[writer](film, i) for i in range(48)])
+    assert list(fitted.reading.frames.values()) == list(range(48))
+    assert fitted.flags == ()
+
+
+@pytest.mark.parametrize("writer", [name for name in WRITERS if name not in ("OpenCV, milliseconds", "FFmpeg")])
+def test_keys_of_pictures_by_the_rate_that_was_told(writer: str, tmp_path: Path) -> None:
+    for number in range(20):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), np.full((64, 64, 3), 12 * number, np.uint8))
+    table = probe_video(tmp_path, fps=12.5)
+    film = Film(tmp_path, table, 12.5, [80.0 * i for i in range(20)])
+    fitted = fit(film, [WRITERS[writer](film, i) for i in range(20)])
+    assert list(fitted.reading.frames.values()) == list(range(20))
+
+
+@pytest.mark.tool("ffmpeg")
+@pytest.mark.parametrize("writer", WRITERS)
+@pytest.mark.parametrize("rate", ["5.6", "0.5"])
+def test_keys_at_low_rates(writer: str, rate: str, tmp_path: Path) -> None:
+    source = ["-f", "lavfi", "-i", f"testsrc=size=128x96:rate={rate}", "-frames:v", "12", "-c:v", "mpeg4"]
+    film = film_of(ffmpeg(tmp_path / "slow.mp4", *source))
+    fitted = fit(film, [WRITERS[writer](film, i) for i in range(12)])
+    assert list(fitted.reading.frames.values()) == list(range(12))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 
+from core.errors import BadInput
 from core.video.decode import VideoReader
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.picture_reader import PictureReader
@@ -33,6 +34,10 @@ def open_video(
     pictures = find_pictures(path)
     if pictures is None:
         return VideoReader(path, stream, fps=fps, max_pixels=max_pixels)
+    if stream is not None:
+        pictures.close()
+        message = f"'{path.name}' consists of pictures and has no video stream {stream}"
+        raise BadInput(message, code="no_such_stream", where="input.video_stream")
     return PictureReader(pictures, fps=fps, max_pixels=max_pixels)
 
 

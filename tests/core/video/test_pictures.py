@@ -204,6 +204,12 @@ def test_times_have_to_be_told(tmp_path: Path) -> None:
     assert caught.value.code == "fps_missing"
 
 
+def test_pictures_have_no_streams(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="consists of pictures and has no video stream 0") as caught:
+        probe_video(folder_of(tmp_path / "a"), fps=10, stream=0)
+    assert caught.value.code == "no_such_stream"
+
+
 def test_packers_folders_are_not_seen(tmp_path: Path) -> None:
     packed = zip_of(folder_of(tmp_path / "a"), tmp_path / "a.zip")
     with zipfile.ZipFile(packed, "a") as more:

@@ -133,7 +133,8 @@ def _damage(reader: VideoReader | PictureReader, rows: Sequence[FrameRow]) -> li
 def _lost(loss: Loss, rows: Sequence[FrameRow]) -> str:
     last = loss.after - 1
     frames = "1 frame" if loss.frames == 1 else f"{loss.frames} frames"
-    return f"{frames} lost after frame {last} at {rows[last].time_s:.3f} s ({', '.join(loss.causes)})"
+    place = f"after frame {last} at {rows[last].time_s:.3f} s" if last >= 0 else "before the first frame"
+    return f"{frames} lost {place} ({', '.join(loss.causes)})"
 
 
 def _average_rate(reader: VideoReader | PictureReader, rows: Sequence[FrameRow]) -> Fraction:

@@ -54,6 +54,7 @@ class Prober:
             "video": str(video),
             "annotations": str(annotations) if annotations else None,
             "video_stream": settings.input.video_stream,
+            "fps": settings.input.fps,
             "roi": settings.roi.model_dump(mode="json"),
             "limits": asdict(self._limits),
             "parent": os.getpid(),

@@ -65,10 +65,12 @@ def parser() -> argparse.ArgumentParser:
     probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
     probe.add_argument("video", type=Path, metavar="VIDEO")
     probe.add_argument("--stream", type=int, metavar="N", help="of several video streams; as input.video_stream")
+    _fps(probe)
     _json(probe)
     check = _add(commands, "check", "say what was understood of an annotation file")
     check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
     check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
+    _fps(check)
     _set(check, "set one option of the input (repeatable), e.g. input.time_convention=index to try a reading")
     _json(check)
     _questions(commands)
@@ -108,7 +110,9 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run = _add(commands, "run", "inspect: video and annotations in, result folder out", epilog=_EXIT_CODES)
-    run.add_argument("video", type=Path, metavar="VIDEO", help="any file that FFmpeg decodes")
+    run.add_argument(
+        "video", type=Path, metavar="VIDEO", help="file, folder or zip of pictures, pattern as f/%%04d.jpg"
+    )
     run.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON; see docs/annotations.md")
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)
@@ -119,6 +123,7 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "--roi", metavar="full|X0,Y0,X1,Y1", help="region of interest, as shares of the source frame's width and height"
     )
+    _fps(run)
     run.add_argument("--allow-truncated", action="store_true", help="use the decodable part of a damaged video")
     run.add_argument("--seed", type=int, metavar="N", help="seed of every random choice (0)")
     run.add_argument("--workers", type=int, metavar="N", help="processes side by side (number of cores)")
@@ -154,6 +159,11 @@ def _preset(command: argparse.ArgumentParser, default: str | None = "default") -
 
 def _set(command: argparse.ArgumentParser, text: str) -> None:
     command.add_argument("--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help=text)
+
+
+def _fps(command: argparse.ArgumentParser) -> None:
+    text = "frames per second of a video without times (pictures, a raw stream); as input.fps"
+    command.add_argument("--fps", type=float, metavar="N", help=text)
 
 
 def _json(command: argparse.ArgumentParser, text: str = "print JSON") -> None:

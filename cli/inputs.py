@@ -17,12 +17,13 @@ from core.errors import BadInput
 from core.settings import make_settings
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video
-from core.video.table import FrameTable, VideoInfo
+from core.video.table import RATE_FROM, FrameTable, VideoInfo, colon_text, listed
 
 
 def probe(parsed: argparse.Namespace) -> int:
     """Decode the whole video once and say what it holds; a damaged video is described, not refused."""
-    table = probe_video(parsed.video, allow_truncated=True, stream=parsed.stream)
+    fps = make_settings("default", {"input.fps": parsed.fps}).input.fps
+    table = probe_video(parsed.video, allow_truncated=True, stream=parsed.stream, fps=fps)
     if parsed.json:
         say_json({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1)
         return 0
@@ -45,10 +46,21 @@ def notes(info: VideoInfo) -> list[str]:
     if info.streams:
         streams = "; ".join(info.streams)
         found.append(f"stream {info.stream} was read of {streams} (--set input.video_stream=N for another)")
+    if info.sample_aspect_ratio != 1:
+        share = colon_text(info.sample_aspect_ratio)
+        found.append(f"pixels are not square ({share}); frames are resampled, size and boxes are of square pixels")
+    if info.interlaced_frames:
+        frames = f"{info.interlaced_frames} of {info.n_frames} frames"
+        found.append(f"interlaced: {frames}; they are deinterlaced, one picture per frame")
+    if info.times_from != "file":
+        rate = f"{float(info.average_rate):g} frames/s, {RATE_FROM[info.times_from]}"
+        found.append(f"the file holds no times; they are made from {rate}")
     if info.joined:
         found.append(f"joined from {len(info.joined) + 1} recordings, at frame {', '.join(map(str, info.joined))}")
     if info.repaired_times:
         found.append(f"{info.repaired_times} frames have no usable time in the file; it is made from the frame rate")
+    if info.damaged_pictures:
+        found.append(f"damaged pictures: frame {listed(info.damaged_pictures)}; they give no keypoints")
     if info.truncated:
         found.append(f"damaged: {'; '.join(info.damage)} (a run needs --allow-truncated)")
     return found
@@ -63,11 +75,11 @@ def _gaps(table: FrameTable) -> dict[str, float | bool]:
 
 def check(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
-    options = input_options(parsed.assignments)
+    options = input_options(parsed.assignments, parsed.fps)
     annotations = load_annotations(parsed.annotations)
     placed, video = None, None
     if parsed.video:
-        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream)
+        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream, fps=options.fps)
         placed, video = place(annotations, table, options.time_convention), table.info
     summary = summarise(annotations, placed)
     if parsed.json:
@@ -80,9 +92,10 @@ def check(parsed: argparse.Namespace) -> int:
     return 0
 
 
-def input_options(assignments: list[str]) -> InputSettings:
+def input_options(assignments: list[str], fps: float | None = None) -> InputSettings:
     """Options of the input as ``NAME=VALUE``; others are refused, because nothing here would read them."""
-    options = dict(parse_assignment(one) for one in assignments)
+    options: dict[str, Any] = {} if fps is None else {"input.fps": fps}
+    options |= (parse_assignment(one) for one in assignments)
     for name in options:
         if not name.startswith("input."):
             raise BadInput(f"'{name}' says nothing about the input; check takes only input.* options", where="--set")

@@ -37,6 +37,8 @@ def from_arguments(parsed: argparse.Namespace) -> Parameters:
         options.update(parse_roi(parsed.roi))
     if parsed.allow_truncated:
         options["input.allow_truncated"] = True
+    if parsed.fps is not None:
+        options["input.fps"] = parsed.fps
     if parsed.seed is not None:
         options["seed"] = parsed.seed
     options.update(parse_assignment(text) for text in parsed.assignments)

@@ -58,10 +58,16 @@ _MATCHER = (
 STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
-        _spec("probe", "input.allow_truncated", "input.video_stream", version=2, reads_video=True, weight=0.2),
+        _spec(
+            "probe",
+            *_options("input", "allow_truncated", "video_stream", "fps"),
+            version=3,
+            reads_video=True,
+            weight=0.2,
+        ),
         _spec("annotations", "input.time_convention", version=3, reads_annotations=True, weight=0.1),
-        _spec("frames", "frames", "roi", "overrides", version=2, reads_video=True, weight=0.3),
-        _spec("features", "features", version=2, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
+        _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
+        _spec("features", "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec(
             "focal",
             *_options("camera", "principal_point", "focal_span", "focal_spans"),
@@ -131,7 +137,7 @@ STAGES: dict[str, StageSpec] = {
             version=6,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=3, reads_video=True, weight=1),
+        _spec("gallery", "gallery", "mapping.method", version=4, reads_video=True, weight=1),
     )
 }
 

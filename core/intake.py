@@ -23,8 +23,11 @@ from core.errors import BadInput, BladeAtlasError
 from core.roi import crop_of
 from core.settings import Settings
 from core.settings.groups import RoiSettings
-from core.video.decode import VideoReader
+from core.video.decode import DecodedFrame, VideoReader
 from core.video.limits import PIXELS_ONLY, VideoLimits
+from core.video.opening import open_video
+from core.video.orientation import square_width
+from core.video.picture_reader import PictureReader
 
 _PR_SET_PDEATHSIG = 1
 
@@ -43,6 +46,7 @@ class Question(TypedDict):
     video: str
     annotations: NotRequired[str | None]
     video_stream: NotRequired[int | None]
+    fps: NotRequired[float | None]
     roi: dict[str, float]
     """Shares of the frame: x0, y0, x1, y1."""
     limits: NotRequired[LimitFields]
@@ -72,14 +76,16 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     The first two frames are decoded, the annotations are read in full. What only a full pass can find
     (damage further on, an interval outside the video) the stages say.
     """
-    check_video(video, settings.input.video_stream)
+    check_video(video, settings.input.video_stream, fps=settings.input.fps)
     if annotations is not None:
         load_annotations(annotations)
     check_roi(settings)
 
 
-def check_video(video: Path, stream: int | None = None, limits: VideoLimits = PIXELS_ONLY) -> VideoSize:
-    """Size and codec of a video; `BadInput` unless the file is one whose first frames decode.
+def check_video(
+    video: Path, stream: int | None = None, limits: VideoLimits = PIXELS_ONLY, fps: float | None = None
+) -> VideoSize:
+    """Size as shown and codec of a video; `BadInput` unless the file is one whose first frames decode.
 
     What the header states is held against `limits` before a frame is decoded: `too_many_pixels`,
     `too_many_frames`, `too_long`.
@@ -88,17 +94,26 @@ def check_video(video: Path, stream: int | None = None, limits: VideoLimits = PI
         video: the file.
         stream: number of the video stream; None takes the film.
         limits: the largest video that is taken.
+        fps: frames per second where the video holds no times.
     """
-    with VideoReader(video, stream, max_pixels=limits.max_frame_pixels) as reader:
+    with open_video(video, stream, fps=fps, max_pixels=limits.max_frame_pixels) as reader:
         _require_length(reader, limits)
-        shapes = [frame.rgb().shape for frame in islice(reader.frames(), 2)]
+        shapes = [_shown_size(reader, frame) for frame in islice(reader.frames(), 2)]
         codec, declared = reader.codec, reader.declared_frames
     if not shapes:
         raise BadInput(f"the video '{video.name}' holds no frame that decodes", code="no_frames", where="video")
-    return {"width": shapes[0][1], "height": shapes[0][0], "codec": codec, "declared_frames": declared}
+    return {"width": shapes[0][0], "height": shapes[0][1], "codec": codec, "declared_frames": declared}
 
 
-def _require_length(reader: VideoReader, limits: VideoLimits) -> None:
+def _shown_size(reader: VideoReader | PictureReader, frame: DecodedFrame) -> tuple[int, int]:
+    """Width and height of a frame with square pixels, turned; it is converted once, so that a failure shows here."""
+    height, width, _ = frame.rgb().shape
+    if reader.orientation.swap_axes:
+        return width, square_width(height, reader.sample_aspect_ratio)
+    return square_width(width, reader.sample_aspect_ratio), height
+
+
+def _require_length(reader: VideoReader | PictureReader, limits: VideoLimits) -> None:
     frames, seconds = reader.declared_frames, reader.declared_s
     if frames > limits.max_video_frames:
         message = f"the video has {frames} frames; at most {limits.max_video_frames} are taken (max_video_frames)"
@@ -121,15 +136,18 @@ def answer(question: Question) -> Answer:
     """Check what a question names.
 
     Args:
-        question: ``video`` and optionally ``annotations`` (paths), ``video_stream``, ``roi`` (shares), ``limits``
-            (`VideoLimits`).
+        question: ``video`` and optionally ``annotations`` (paths), ``video_stream``, ``fps``, ``roi`` (shares),
+            ``limits`` (`VideoLimits`).
 
     Returns:
         ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
     """
     try:
         found = check_video(
-            Path(question["video"]), question.get("video_stream"), VideoLimits(**question.get("limits", {}))
+            Path(question["video"]),
+            question.get("video_stream"),
+            VideoLimits(**question.get("limits", {})),
+            question.get("fps"),
         )
         crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
         path = question.get("annotations")

@@ -4,5 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-LABELS = Path(__file__).parent / "data" / "inputs" / "labels.json"
+from tests.inputs import INPUTS
+
+LABELS = INPUTS / "labels.json"
 SAMPLE = Path(__file__).parents[1] / "samples" / "turbine.mp4"

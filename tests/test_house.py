@@ -324,3 +324,8 @@ def test_the_newest_version_in_the_changelog_is_that_of_the_package() -> None:
     assert declared is not None
     assert versions[0] == declared.group(1)
     assert sorted(versions, key=lambda text: [int(part) for part in text.split(".")], reverse=True) == versions
+
+
+def test_the_folder_of_small_inputs_is_named_in_one_place() -> None:
+    named = [path for path, text in texts() if re.search(r"[\"']data[\"'] / [\"']inputs[\"']", text)]
+    assert named == [ROOT / "tests" / "inputs.py"]

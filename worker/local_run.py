@@ -25,6 +25,7 @@ from core.outputs import OUTPUTS, TABLES
 from core.report.summary import stage_state
 from core.settings import Settings
 from core.states import RunState, TaskState, run_state
+from core.video.pictures import digest_of_video
 from store.db import Database, open_sqlite
 from store.graph import CORE_GRAPH, Graph
 from store.inspections import Inspections, input_digest
@@ -163,12 +164,12 @@ def run_inspection(
 
 
 def _input_files(video: Path, annotations: Path | None) -> InputFiles:
-    require_file(video, "video")
+    video_sha256 = digest_of_video(video)
     if annotations is not None:
         require_file(annotations, "annotations")
     return InputFiles(
         video=str(video.resolve()),
-        video_sha256=digest_of_file(video),
+        video_sha256=video_sha256,
         annotations=str(annotations.resolve()) if annotations else None,
         annotations_sha256=digest_of_file(annotations) if annotations else None,
     )

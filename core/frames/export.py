@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from core.errors import StageFailed
 from core.frames.sampling import ChosenFrame
 from core.scene.frame import Crop, image_name
-from core.video.decode import VideoReader
 from core.video.limits import MAX_FRAME_PIXELS
+from core.video.opening import reopen_video
+from core.video.shown import shown_frames
 from core.video.table import FrameTable
 
 
@@ -29,7 +30,7 @@ def export_frames(
     max_pixels: int = MAX_FRAME_PIXELS,
     on_frame: Callable[[int], None] | None = None,
 ) -> None:
-    """Write the crop of every chosen frame to `folder`, as decoded, without resizing.
+    """Write the crop of every chosen frame to `folder`, as shown: fields joined and pixels square, else as decoded.
 
     Frames are found by counting, never by seeking, and each must have the hash of the frame table: a
     detection can then not meet another frame than the one it was made on.
@@ -49,15 +50,16 @@ def export_frames(
     """
     by_source = {frame.source_index: frame.index for frame in chosen}
     left = len(by_source)
-    with VideoReader(video, table.info.stream, max_pixels=max_pixels) as reader:
-        for frame in reader.frames():
+    with reopen_video(video, table.info, max_pixels=max_pixels) as reader:
+        for shown in shown_frames(reader.frames(), table.info):
+            frame = shown.decoded
             index = by_source.get(frame.index)
             if index is not None:
-                rgb = frame.rgb()
-                if hashlib.sha256(rgb.data).hexdigest() != table.rows[frame.index].sha256:
+                if hashlib.sha256(frame.rgb().data).hexdigest() != table.rows[frame.index].sha256:
                     raise StageFailed(
                         f"frame {frame.index} of '{video.name}' changed since it was probed", where="frames"
                     )
+                rgb = shown.rgb()
                 (folder / image_name(index)).write_bytes(_jpeg(rgb[crop.y0 : crop.y1, crop.x0 : crop.x1], jpeg_quality))
                 left -= 1
             if on_frame:

@@ -1,4 +1,4 @@
-"""The result of `frames` (images, ``frames.json``, ``crop.json``), and ``registered.json`` of `extend`."""
+"""The result of `frames` (images and three JSON files), and which of the frames `extend` registered."""
 
 from __future__ import annotations
 
@@ -10,14 +10,16 @@ from core.json_files import read_json
 from core.scene.frame import Crop, RunFrames, frames_of, image_name
 
 _FRAMES = "frames.json"
+_DAMAGED = "damaged.json"
 _CROP = "crop.json"
 _IMAGES = "images"
 _REGISTERED = "registered.json"
 
 
-def write_frames(folder: Path, frames: RunFrames, crop: Crop) -> None:
-    """Write the frame table of the run and the part of the frames that was exported."""
+def write_frames(folder: Path, frames: RunFrames, crop: Crop, damaged: Sequence[int] = ()) -> None:
+    """Write the frame table of the run, the indices of its damaged pictures and the part that was exported."""
     rows = [frame.to_dict() for frame in frames]
+    (folder / _DAMAGED).write_text(json.dumps(list(damaged)) + "\n", encoding="utf-8")
     (folder / _FRAMES).write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     (folder / _CROP).write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")
 
@@ -25,6 +27,11 @@ def write_frames(folder: Path, frames: RunFrames, crop: Crop) -> None:
 def read_frames(folder: Path) -> RunFrames:
     """The frame table of the run."""
     return frames_of(read_json(folder / _FRAMES))
+
+
+def read_damaged(folder: Path) -> list[int]:
+    """Indices of the frames whose pictures are damaged."""
+    return [int(index) for index in read_json(folder / _DAMAGED)]
 
 
 def read_crop(folder: Path) -> Crop:

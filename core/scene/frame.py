@@ -40,7 +40,8 @@ class Frame:
     time_s: float
     """Seconds from the first frame of the video, by its presentation time."""
     sha256: str
-    """SHA-256 of the decoded RGB24 frame before cropping."""
+    """SHA-256 of the decoded RGB24 frame before deinterlacing, making its pixels square, and
+    cropping."""
     role: Role
     """Why it takes part: `sampled`, `annotated`, `both`, `neighbour` or `added`."""
 

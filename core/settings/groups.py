@@ -17,6 +17,14 @@ class InputSettings(Group):
         source="method",
         ge=0,
     )
+    fps: float | None = option(
+        None,
+        "frames per second of a video without times: pictures, a raw stream; none = what a raw stream's header states",
+        unit="1/s",
+        source="user",
+        ge=0.01,
+        le=1000,
+    )
     time_convention: Literal[
         "auto",
         "pts",

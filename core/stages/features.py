@@ -13,7 +13,7 @@ from core.annotations.masks import blade_mask
 from core.features.extract import inside_mask, make_extractor, read_image
 from core.features.io import feature_name, write_features
 from core.io.annotations import read_masks
-from core.io.frames import image_path, read_crop, read_frames
+from core.io.frames import image_path, read_crop, read_damaged, read_frames
 from core.stage import StageResult, StageTask
 from core.video.still import read_still
 
@@ -27,12 +27,14 @@ def run(task: StageTask) -> StageResult:
     extract = make_extractor(settings, task.threads)
     mask_of = _blade_masks(task, frames) if settings.blade_masks_only else None
     moving = ~read_still(frames)
+    damaged = set(read_damaged(frames))
     counts = []
     for done, index in enumerate(range(start, end)):
         task.report(done, end - start, f"frame {index}")
         features = extract(read_image(image_path(frames, index)))
         mask = mask_of(index) if mask_of else None
-        features = inside_mask(features, moving if mask is None else moving & mask)
+        usable = np.zeros_like(moving) if index in damaged else moving
+        features = inside_mask(features, usable if mask is None else usable & mask)
         write_features(task.out / feature_name(index), features)
         counts.append(len(features))
     task.report(1, 1)

@@ -19,7 +19,11 @@ from core.video.table import FrameTable
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `images/`, `frames.json`, `crop.json` and `still.png`; `BadInput` for an impossible interval or region."""
+    """Write `images/`, `frames.json`, `damaged.json`, `crop.json` and `still.png`.
+
+    Raises:
+        BadInput: an impossible interval or region.
+    """
     settings = task.settings
     table = FrameTable.read(task.input("probe"))
     detections = read_detections(task.input("annotations"))
@@ -50,15 +54,19 @@ def run(task: StageTask) -> StageResult:
         )
     )
     shown = sorted(chosen, key=lambda frame: frame.source_index)
-    still = find_still([image_path(task.out, frame.index) for frame in shown])
+    broken = set(table.info.damaged_pictures)
+    damaged = [frame.index for frame in chosen if frame.source_index in broken]
+    sound = [frame for frame in shown if frame.source_index not in broken] or shown
+    still = find_still([image_path(task.out, frame.index) for frame in sound])
     flags = list(interval.flags)
     if settings.frames.mask_still and still.share:
         flags.append(Flag("still_pixels_masked", Severity.INFO, still.share, 0.0, f"{still.frames} frames compared"))
     write_still(task.out, still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
-    write_frames(task.out, frames, crop)
+    write_frames(task.out, frames, crop, damaged)
     return StageResult(
         {
             "n_frames": len(chosen),
+            "n_damaged": len(damaged),
             "n_search": frames.n_search,
             "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
             "source_width": crop.source_width,

@@ -24,7 +24,8 @@ from core.report.models import join_detections
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
 from core.task_key import stage_of
-from core.video.decode import VideoReader
+from core.video.opening import reopen_video
+from core.video.shown import shown_frames
 from core.video.table import FrameTable
 from core.viewpoint import choose_two
 
@@ -96,19 +97,20 @@ def _write_frames(
         return
     last = max([*pictures, *evidence])
     quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
-    stream = FrameTable.read(task.input("probe")).info.stream
-    with VideoReader(task.video, stream, max_pixels=task.max_frame_pixels) as reader:
-        for decoded in reader.frames():
-            picture = pictures.get(decoded.index)
+    info = FrameTable.read(task.input("probe")).info
+    with reopen_video(task.video, info, max_pixels=task.max_frame_pixels) as reader:
+        for shown in shown_frames(reader.frames(), info):
+            index = shown.decoded.index
+            picture = pictures.get(index)
             if picture is not None:
-                drawn = draw_boxes(decoded.rgb(), picture.boxes.rows, colors)
+                drawn = draw_boxes(shown.rgb(), picture.boxes.rows, colors)
                 for number, place in picture.marks:
                     drawn = draw_place(drawn, number, place)
                 _write_image(task, picture.boxes.file_name, drawn, quality)
-            for one in evidence.get(decoded.index, ()):
-                _write_image(task, one.file_name, draw_evidence(decoded.rgb(), one), quality)
-            task.report(0.5 * decoded.index, last + 1, f"frame {decoded.index} of {last}")
-            if decoded.index >= last:
+            for one in evidence.get(index, ()):
+                _write_image(task, one.file_name, draw_evidence(shown.rgb(), one), quality)
+            task.report(0.5 * index, last + 1, f"frame {index} of {last}")
+            if index >= last:
                 break
 
 

@@ -16,13 +16,7 @@ from av.stream import Disposition
 
 from core.errors import BadInput
 from core.files import require_file
-
-_FORMATS = (
-    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,flv,asf,ogg,mxf,ivf,h264,hevc,m4v,mjpeg,mpegvideo,"
-    "wav,mp3,aac,flac"
-)
-"""Containers that are opened. Playlists are not among them: they would make the decoder read other files.
-Audio formats are, so that they can be named."""
+from core.video.formats import FORMAT_WHITELIST, READABLE
 
 _PICTURE = Disposition.attached_pic | Disposition.timed_thumbnails | Disposition.still_image | Disposition.dependent
 """Streams that are no film of their own: covers, thumbnails, still images, layers of another stream."""
@@ -63,12 +57,13 @@ def open_container(path: Path) -> InputContainer:
         return av.open(
             # Without the protocol's name, one in the file's name would be taken for it: "axis:2.mp4".
             f"file:{os.path.abspath(path)}",
-            options={"format_whitelist": _FORMATS, "protocol_whitelist": "file"},
+            options={"format_whitelist": FORMAT_WHITELIST, "protocol_whitelist": "file"},
             metadata_errors="replace",
         )
     except (av.error.FFmpegError, ValueError):
         raise BadInput(
-            f"'{path.name}' is not a video that can be read (unknown format, or its index is missing)",
+            f"'{path.name}' is not a video that can be read (unknown format, or its index is missing); "
+            f"readable are {READABLE}",
             code="not_a_video",
             where="video",
         ) from None

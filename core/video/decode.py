@@ -2,7 +2,8 @@
 
 Frames come in presentation order, turned as the rotation flag asks, as RGB24. The decoder runs on one
 thread: only then does it report every concealed error, and the result is the same on every machine.
-After damage, frames are dropped up to the next keyframe, because they may refer to what is broken.
+After damage, frames are dropped up to the next keyframe, because they may refer to what is broken. Where every
+picture stands for itself, one that the decoder complains of is kept and named (`VideoReader.damaged`).
 """
 
 from __future__ import annotations
@@ -23,10 +24,13 @@ from numpy.typing import NDArray
 
 from core.errors import BadInput
 from core.video.clock import FALLBACK_RATE, PresentationClock
+from core.video.complaints import Complaints, listened
 from core.video.container import film_of, open_container, require_pixels, time_base_of
+from core.video.formats import TIMELESS
 from core.video.limits import MAX_FRAME_PIXELS
-from core.video.orientation import Orientation
+from core.video.orientation import Orientation, square_width
 from core.video.soundness import Loss, Sent, SoundFrames, shows_picture
+from core.video.table import TimesFrom
 
 if TYPE_CHECKING:
     from av.packet import Packet
@@ -38,6 +42,16 @@ _DECLARING_FORMATS = frozenset({"mov", "matroska", "avi", "flv", "asf"})
 _INDEXED_FORMATS = frozenset({"mov", "avi"})
 """Containers whose index lists every packet. (Its count stands in the header too, but that of AVI counts the frames
 which a recorder dropped, and that of MP4 those which an edit list cuts away.)"""
+
+_UNMARKED = frozenset({"mjpeg", "rawvideo", "ffv1", "huffyuv", "ffvhuff", "utvideo", "v210", "qtrle"})
+"""Codecs that do not mark interlaced pictures; there the container's field order counts."""
+_COMPLAINING = frozenset({"gif", "ffv1", "msmpeg4v1", "msmpeg4v2", "msmpeg4v3"})
+"""Codecs whose pictures refer to others and whose decoders tell of damage in messages only. (Those of H.264, HEVC and
+MPEG mark their frames, and report errors of sound streams, too.)"""
+_FIELD_ORDERS = {2: "tff", 3: "bff", 4: "bff", 5: "tff"}
+"""FFmpeg's AVFieldOrder, as its filter `setfield` names the field that is shown first."""
+_SANE_RATES = (Fraction(1, 100), Fraction(1000))
+"""Frames per second outside of these in the header of a raw stream are no rate."""
 
 _JOIN_MARK = 3
 """A packet that is marked as cut off because another recording follows is one of the last so many before it."""
@@ -52,12 +66,13 @@ class DecodedFrame:
     pts: int
     """Presentation time in units of the reader's time base, strictly increasing."""
     keyframe: bool
-    _frame: av.VideoFrame = field(repr=False)
-    _orientation: Orientation = field(repr=False)
+    coded: av.VideoFrame = field(repr=False)
+    """FFmpeg's frame."""
+    orientation: Orientation = field(repr=False)
 
     def rgb(self) -> NDArray[np.uint8]:
-        """(h, w, 3) uint8 RGB, as shown."""
-        return self._orientation.apply(np.asarray(self._frame.to_ndarray(format="rgb24"), np.uint8))
+        """(h, w, 3) uint8 RGB, turned; not deinterlaced and without square pixels (`core.video.shown`)."""
+        return self.orientation.apply(np.asarray(self.coded.to_ndarray(format="rgb24"), np.uint8))
 
 
 class VideoReader:
@@ -66,6 +81,7 @@ class VideoReader:
     Args:
         path: the file.
         stream: number of the stream to read; None takes the film (`core.video.container.choose_film`).
+        fps: frames per second of a file that holds no times of its own; `BadInput` for any other.
         max_pixels: pictures with more are refused, from the header.
 
     Attributes:
@@ -76,38 +92,59 @@ class VideoReader:
         declared_frames: 0 when unknown.
         declared_s: length as the header states it; None where it states none.
         codec: name of the codec.
+        sample_aspect_ratio: width / height of a pixel as coded.
+        times_from: where the times of the frames come from.
+        interlaced_frames: number of frames so far that are made of two fields.
+        field_order: ``tff`` or ``bff`` where the container says which field is first and the frames do not; else empty.
         faults: what was found broken in the file so far, in words.
         orientation: known after the first frame.
     """
 
-    def __init__(self, path: Path, stream: int | None = None, *, max_pixels: int = MAX_FRAME_PIXELS) -> None:
+    def __init__(
+        self,
+        path: Path,
+        stream: int | None = None,
+        *,
+        fps: float | Fraction | None = None,
+        max_pixels: int = MAX_FRAME_PIXELS,
+    ) -> None:
         self.name = path.name
         self._max_pixels = max_pixels
         self._container = open_container(path)
         try:
             self._stream, self.streams = film_of(self._container, path.name, stream)
             codec = self._stream.codec_context
-            require_pixels(codec.width, codec.height, self.name, max_pixels)
+            self.sample_aspect_ratio = Fraction(self._stream.sample_aspect_ratio or 1)
+            self._require_pixels(codec.width, codec.height)
+            self._format = set(self._container.format.name.split(","))
+            self._made_rate, self.times_from = self._made_up_rate(fps)
         except BadInput:
             self._container.close()
             raise
         self._stream.thread_type = "NONE"
         codec.flags |= Flags.copy_opaque  # a frame then carries the number of its packet
         self.stream_index = int(self._stream.index)
-        self.time_base = time_base_of(self._stream)
+        self._time_base = time_base_of(self._stream)
+        self.time_base = 1 / self._made_rate if self._made_rate else self._time_base
         rate = self._stream.average_rate
         self.declared_rate = Fraction(rate) if rate else None
         self.declared_frames = int(self._stream.frames)
         self.codec = str(codec.name)
+        self.field_order = _FIELD_ORDERS.get(int(codec.field_order), "") if self.codec in _UNMARKED else ""
+        self.interlaced_frames = 0
+        self._stands_alone = bool(codec.codec.intra_only)
+        self._complaints = Complaints() if self._stands_alone or self.codec in _COMPLAINING else None
         self.faults: list[str] = []
         self.orientation = Orientation()
-        self._clock = PresentationClock(self.time_base, self.declared_rate)
+        self._clock = PresentationClock(self._time_base, self.declared_rate)
         self._sound: SoundFrames[av.VideoFrame] = SoundFrames()
         self._first_s: Fraction | None = None
         self._end_s = Fraction(0)
+        """Of all streams."""
+        self._last_s = Fraction(0)
+        """Start of the latest packet of the film."""
         self._video_end = 0
         self._chunk = -1
-        self._format = set(self._container.format.name.split(","))
         self.declared_s = self._declared_s()
         self._listed = len(self._stream.index_entries) if self._format & _INDEXED_FORMATS else 0
 
@@ -134,6 +171,11 @@ class VideoReader:
         """Frames so far at which the stamps start again: the file was joined from several recordings."""
         return self._clock.joined
 
+    @property
+    def damaged(self) -> tuple[int, ...]:
+        """After the last frame: those of the frames whose decoder complained of their picture."""
+        return self._complaints.frames() if self._complaints and self._stands_alone else ()
+
     def frames(self) -> Iterator[DecodedFrame]:
         """Frames in presentation order; damaged ones are left out and noted in `losses` and `faults`."""
         shape = None
@@ -147,8 +189,15 @@ class VideoReader:
                     code="frame_size_changes",
                     where="video",
                 )
-            pts = self._clock.time(self._stamp(frame), int(frame.duration or 0))
-            self._video_end = pts + int(frame.duration or 0)
+            if self._made_rate:
+                pts, duration = index, 1
+            else:
+                duration = int(frame.duration or 0)
+                pts = self._clock.time(self._stamp(frame), duration)
+            self._video_end = pts + duration
+            self.interlaced_frames += bool(frame.interlaced_frame or self.field_order)
+            if self._complaints and self._stands_alone:
+                self._complaints.came(index, frame.opaque)
             yield DecodedFrame(index, pts, bool(frame.key_frame), frame, self.orientation)
         self._clock.finish()
 
@@ -163,12 +212,16 @@ class VideoReader:
 
     def _sound_frames(self) -> Iterator[av.VideoFrame]:
         """Frames that depend on nothing broken."""
-        duration = 1 / ((self.declared_rate or FALLBACK_RATE) * self.time_base)
+        duration = 1 / ((self.declared_rate or FALLBACK_RATE) * self._time_base)
         for frame in self._decode():
             if frame is not None:
-                require_pixels(frame.width, frame.height, self.name, self._max_pixels)
-                self._sound.came(frame, duration)
+                self._require_pixels(frame.width, frame.height)
+                self._sound.came(frame, duration, broken=self._is_complained_of(frame))
             yield from self._sound.sound()
+
+    def _is_complained_of(self, frame: av.VideoFrame) -> bool:
+        """Whether the decoder complained of a frame that others refer to."""
+        return self._complaints is not None and not self._stands_alone and self._complaints.of(frame.opaque)
 
     def _decode(self) -> Iterator[av.VideoFrame | None]:
         """Frames of the stream as the decoder gives them; None once it holds none back any more."""
@@ -183,7 +236,7 @@ class VideoReader:
                     self._sound.sent(sent)
                 packet.opaque = number
                 try:
-                    frames = packet.decode()
+                    frames = self._decoded(packet, number)
                 except av.error.FFmpegError:
                     pass
                 else:
@@ -198,6 +251,15 @@ class VideoReader:
         yield None
         if number + 1 < self._listed:
             self._fault(f"{self._listed - number - 1} of the {self._listed} frames that its index lists are missing")
+
+    def _decoded(self, packet: Packet[VideoStream], number: int) -> list[av.VideoFrame]:
+        """Frames that come out for a packet."""
+        if self._complaints is None:
+            return list(packet.decode())
+        with listened() as said:
+            frames = list(packet.decode())
+        self._complaints.heard(number, said)
+        return frames
 
     def _drained(self) -> list[av.VideoFrame]:
         """What the decoder still holds."""
@@ -232,15 +294,39 @@ class VideoReader:
             except StopIteration:
                 return
             except av.error.FFmpegError:
-                self._fault("data missing before the end")
+                # What separates the pictures of this format is missing after the last one.
+                if "mpjpeg" not in self._format:
+                    self._fault("data missing before the end")
                 return
             if packet.pts is not None and packet.time_base:
                 start = packet.pts * Fraction(packet.time_base)
                 self._first_s = start if self._first_s is None else min(self._first_s, start)
                 self._end_s = max(self._end_s, start + (packet.duration or 0) * Fraction(packet.time_base))
+                if packet.stream_index == self.stream_index:
+                    self._last_s = max(self._last_s, start)
             # An empty packet would tell the decoder that nothing follows.
             if packet.stream_index == self.stream_index and packet.size:
                 yield cast("Packet[VideoStream]", packet)  # by its number
+
+    def _require_pixels(self, width: int, height: int) -> None:
+        require_pixels(square_width(width, self.sample_aspect_ratio), height, self.name, self._max_pixels)
+
+    def _made_up_rate(self, fps: float | Fraction | None) -> tuple[Fraction | None, TimesFrom]:
+        """The rate from which the times are made, and where it comes from; None where the file holds times."""
+        if not self._format & TIMELESS:
+            if fps is not None:
+                raise BadInput(
+                    f"'{self.name}' holds the times of its frames; input.fps is for raw streams and pictures",
+                    code="fps_not_needed",
+                    where="input.fps",
+                )
+            return None, "file"
+        if fps is not None:
+            return Fraction(str(fps)), "given"
+        stated = self._stream.codec_context.framerate
+        if stated and _SANE_RATES[0] <= Fraction(stated) <= _SANE_RATES[1]:
+            return Fraction(stated), "stream"
+        return FALLBACK_RATE, "assumed"
 
     def _fault(self, what: str) -> None:
         if what not in self.faults:
@@ -252,11 +338,16 @@ class VideoReader:
         matrix = sides.get(SideDataType.DISPLAYMATRIX)
         return Orientation.from_display_matrix(bytes(matrix)) if matrix is not None else Orientation()
 
-    def missing_at_end_s(self) -> Fraction:
-        """After the last frame: seconds that the header promises and the file does not hold; 0 when unknown."""
+    def missing_at_end_s(self, spacing_s: Fraction) -> Fraction:
+        """After the last frame: seconds that the header promises and the file does not hold; 0 when unknown.
+
+        Args:
+            spacing_s: what a frame lasts; not all containers say so of the last one.
+        """
         if self.declared_s is None:
             return Fraction(0)
-        return max(Fraction(0), self.declared_s - (self._end_s - (self._first_s or Fraction(0))))
+        end_s = max(self._end_s, self._last_s + spacing_s)
+        return max(Fraction(0), self.declared_s - (end_s - (self._first_s or Fraction(0))))
 
     def _declared_s(self) -> Fraction | None:
         declared = self._container.duration
@@ -274,7 +365,7 @@ def _starts_again(packet: Packet[VideoStream], before: Packet[VideoStream]) -> b
 
 
 def iter_frames(path: Path) -> Iterator[tuple[int, int, float, NDArray[np.uint8]]]:
-    """Every decodable frame as (index, pts, time_s, rgb): seconds from the first frame, (h, w, 3) uint8 as shown.
+    """Every decodable frame as (index, pts, time_s, rgb): seconds from the first frame, (h, w, 3) uint8 as turned.
 
     The numbering is that of the frame table. Raises `BadInput` when the file is no video.
     """

@@ -1,9 +1,10 @@
-"""How a video asks to be shown: quarter turns and mirror images from its display matrix."""
+"""How a video asks to be shown: quarter turns and mirror images from its display matrix, pixels that are not square."""
 
 from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,3 +62,13 @@ class Orientation:
         if self.mirror_y:
             image = image[::-1]
         return np.ascontiguousarray(image)
+
+
+def square_width(width: int, aspect: Fraction) -> int:
+    """Columns of a picture once its pixels are square, as FFmpeg's ``scale=iw*sar:ih`` counts them.
+
+    Args:
+        width: columns as coded.
+        aspect: width / height of a pixel (sample aspect ratio).
+    """
+    return max(1, int(width * aspect))

@@ -113,8 +113,10 @@ class SoundFrames(Generic[AnyFrame]):
         self._pending: dict[int, Sent] = {}
         """Sent and not out yet, in the order of decoding."""
         self._held: deque[tuple[int, AnyFrame]] = deque()
-        self._broken: list[int] = []
-        """Broken packets that no sound keyframe has come after."""
+        self._broken: dict[int, tuple[Sent, str]] = {}
+        """Broken packets that no sound keyframe has come after, with the cause."""
+        self._leading: set[int] = set()
+        """Broken packets shown before the first sound frame and decoded after it."""
         self._first: Sent | None = None
         """Packet of the first sound frame. Recordings begin in the middle of a group; what cannot decode there was
         never lost."""
@@ -132,17 +134,23 @@ class SoundFrames(Generic[AnyFrame]):
         self.ended()
         self._break(packet, "a packet does not decode")
 
-    def came(self, frame: AnyFrame, duration: Fraction) -> None:
-        """A frame came out; `duration` is what a frame of this stream lasts, in units of pts."""
+    def came(self, frame: AnyFrame, duration: Fraction, *, broken: bool = False) -> None:
+        """A frame came out.
+
+        Args:
+            frame: of FFmpeg.
+            duration: what a frame of this stream lasts, in units of pts.
+            broken: there is more than the frame's own mark to tell that it is.
+        """
         number = frame.opaque if isinstance(frame.opaque, int) else next(iter(self._pending), 0)
         packet = self._pending.pop(number, Sent(number, frame.pts))
         if frame.interlaced_frame:
             self._drop_second_field(packet, duration)
         self._miss(self._overdue(number, frame))
-        if frame.is_corrupt:
+        if frame.is_corrupt or broken:
             self._break(packet, "errors in a picture")
         elif self._first is None and (frame.key_frame or not self._broken):
-            self._first = packet
+            self._begin(packet)
         self._held.append((number, frame))
 
     def ended(self) -> None:
@@ -156,8 +164,10 @@ class SoundFrames(Generic[AnyFrame]):
             if self._pending and next(iter(self._pending)) < number:
                 return  # not known yet
             self._held.popleft()
+            if number in self._leading:
+                continue
             if frame.key_frame and number not in self._broken:
-                self._broken = [n for n in self._broken if n > number]
+                self._broken = {n: broken for n, broken in self._broken.items() if n > number}
             elif any(n <= number for n in self._broken):
                 if number not in self._broken and any(self._counts(n) for n in self._broken if n < number):
                     self.losses[-1].frames += 1
@@ -194,6 +204,20 @@ class SoundFrames(Generic[AnyFrame]):
             if self._first is not None and not _later(self._first.pts, packet.pts):
                 self._break(packet, "no picture came of a packet")
 
+    def _begin(self, first: Sent) -> None:
+        """The first sound frame came out, maybe after broken ones that were decoded after it.
+
+        Of these, the ones shown before it lead from frames that the recording lacks: they were never lost, and nothing
+        refers to them.
+        """
+        self._first = first
+        early, self._broken = self._broken, {n: broken for n, broken in self._broken.items() if not self._counts(n)}
+        for number, (packet, cause) in early.items():
+            if self._counts(number) and _later(first.pts, packet.pts):
+                self._leading.add(number)
+            elif self._counts(number):
+                self._break(packet, cause)
+
     def _break(self, packet: Sent, cause: str) -> None:
         if self._counts(packet.number):
             if not any(self._counts(n) for n in self._broken):
@@ -203,7 +227,7 @@ class SoundFrames(Generic[AnyFrame]):
             loss.frames += 1
             if cause not in loss.causes:
                 loss.causes.append(cause)
-        self._broken.append(packet.number)
+        self._broken[packet.number] = (packet, cause)
 
     def _counts(self, number: int) -> bool:
         return self._first is not None and number > self._first.number

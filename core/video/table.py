@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from core.errors import StageFailed
 from core.geometry.nearest import nearest_index
@@ -17,10 +18,27 @@ _INFO = "video.json"
 _TABLE = "table.csv"
 _COLUMNS = ("index", "pts", "time_s", "keyframe", "sha256")
 
+_RATIONALS = ("average_rate", "time_base", "sample_aspect_ratio")
+_LISTS = ("damage", "joined", "streams", "damaged_pictures")
+
+TimesFrom = Literal["file", "stream", "given", "assumed"]
+"""Where times come from: the file holds them, or they are made from a rate that the stream's own header states, that
+the user gave, or that had to be assumed."""
+
+
+RATE_FROM: Mapping[TimesFrom, str] = {
+    "stream": "as the stream's header states",
+    "given": "as told",
+    "assumed": "assumed: the file states none (input.fps)",
+}
+"""Where a rate comes from that times are made of, in words."""
+
+_MAX_LISTED = 20
+
 
 @dataclass(frozen=True)
 class VideoInfo:
-    """What is known of a video after decoding it once; sizes are those of the shown (turned) frame."""
+    """What is known of a video after decoding it once; sizes are those of the shown frame: turned, square pixels."""
 
     width: int
     height: int
@@ -50,13 +68,22 @@ class VideoInfo:
     """The video streams of the file in words, where there are several."""
     declared_rate: Fraction | None = None
     """Frames per second as the file's header says, what OpenCV's ``CAP_PROP_FPS`` gives; None when it says nothing."""
+    times_from: TimesFrom = "file"
+    sample_aspect_ratio: Fraction = Fraction(1)
+    """Width / height of a pixel as coded."""
+    interlaced_frames: int = 0
+    """Frames that are made of two fields."""
+    field_order: str = ""
+    """The field that is first (``tff``, ``bff``) where only the container says so."""
+    damaged_pictures: tuple[int, ...] = ()
+    """Frames whose picture is damaged though no other frame suffers from it; they stay in the table."""
 
     def to_dict(self) -> dict[str, object]:
         """The form of `video.json`; rationals as ``num/den``."""
         row = dict(self.__dict__)
-        for name in ("average_rate", "time_base"):
+        for name in _RATIONALS:
             row[name] = rational_text(row[name])
-        for name in ("damage", "joined", "streams"):
+        for name in _LISTS:
             row[name] = list(row[name])
         row["declared_rate"] = None if self.declared_rate is None else rational_text(self.declared_rate)
         return row
@@ -65,9 +92,10 @@ class VideoInfo:
     def from_dict(cls, row: dict[str, Any]) -> VideoInfo:
         """Rebuild from what `to_dict` gave, as read from `video.json`."""
         row = dict(row)
-        for name in ("average_rate", "time_base"):
-            row[name] = Fraction(row[name])
-        for name in ("damage", "joined", "streams"):
+        for name in _RATIONALS:
+            if name in row:
+                row[name] = Fraction(row[name])
+        for name in _LISTS:
             row[name] = tuple(row.get(name, ()))
         declared = row.get("declared_rate")
         row["declared_rate"] = None if declared is None else Fraction(declared)
@@ -89,7 +117,7 @@ class FrameRow:
     """Seconds from the first frame, the float nearest to the exact time."""
     keyframe: bool
     sha256: str
-    """Of the RGB24 bytes of the whole shown frame."""
+    """Of the RGB24 bytes of the whole frame as decoded and turned, before fields are joined and pixels made square."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +171,17 @@ class FrameTable:
         if len(rows) != info.n_frames:
             raise StageFailed(f"frame table has {len(rows)} rows for {info.n_frames} frames", where="probe")
         return cls(info, rows)
+
+
+def colon_text(ratio: Fraction) -> str:
+    """``num:den``, as shares of pixels are written."""
+    return f"{ratio.numerator}:{ratio.denominator}"
+
+
+def listed(frames: Sequence[int]) -> str:
+    """Numbers of frames, the first ones when there are many."""
+    further = f" and {len(frames) - _MAX_LISTED} further" if len(frames) > _MAX_LISTED else ""
+    return ", ".join(map(str, frames[:_MAX_LISTED])) + further
 
 
 def rational_text(value: Fraction) -> str:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import json
-from pathlib import Path
+import zipfile
+from collections.abc import Sequence
 
 import pytest
 from fastapi.testclient import TestClient
+from PIL import Image
 
-INPUTS = Path(__file__).parents[1] / "data" / "inputs"
+from tests.core.making_videos import picture
+from tests.inputs import INPUTS
 
 
 @pytest.mark.parametrize(
@@ -28,6 +32,11 @@ INPUTS = Path(__file__).parents[1] / "data" / "inputs"
         ("m96.avi", "ms.json"),
         ("m96.avi", "labels.json"),
         ("m96.avi", "nulldet.json"),
+        ("s360_sar43.mp4", None),
+        ("s480i.mp4", None),
+        ("raw.h264", "k96.json"),
+        ("mjpeg_half.avi", None),
+        ("corrupt_mid.avi", None),
     ],
 )
 def test_a_film_is_accepted(video: str, annotations: str | None, client: TestClient) -> None:
@@ -43,6 +52,40 @@ def test_large_pictures_are_refused_with_the_limit(client: TestClient) -> None:
     answer = client.post("/v1/inspections", files={"video": ("big180.mp4", (INPUTS / "big180.mp4").read_bytes())})
     assert (answer.status_code, answer.json()["code"]) == (422, "too_many_pixels")
     assert "40,000,000" in answer.json()["detail"]
+
+
+def zipped(sizes: Sequence[tuple[int, int]]) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as pictures:
+        for number, size in enumerate(sizes):
+            one = io.BytesIO()
+            Image.fromarray(picture(number, *size)).save(one, "PNG")
+            pictures.writestr(f"{number}.png", one.getvalue())
+    return packed.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("sizes", "options", "code"),
+    [
+        ([(160, 128)] * 12, {"input.fps": 10}, None),
+        ([(160, 128)] * 12, {}, "fps_missing"),
+        ([(160, 128), (128, 160)], {"input.fps": 10}, "frame_size_changes"),
+        ([], {"input.fps": 10}, "not_a_video"),
+        ([(60, 60)] * 3, {"input.fps": 10}, "roi_too_small"),
+    ],
+)
+def test_a_zip_of_pictures_is_a_video(
+    sizes: Sequence[tuple[int, int]], options: dict[str, float], code: str | None, client: TestClient
+) -> None:
+    files = {"video": ("p.zip", zipped(sizes)), "parameters": (None, json.dumps({"options": options}))}
+    answer = client.post("/v1/inspections", files=files)
+    assert (answer.status_code, answer.json().get("code")) == (422 if code else 202, code), answer.text
+
+
+def test_a_rate_for_a_file_that_has_times_is_refused(client: TestClient) -> None:
+    files = {"video": ("m96.avi", (INPUTS / "m96.avi").read_bytes())}
+    answer = client.post("/v1/inspections", files={**files, "parameters": (None, '{"options": {"input.fps": 12}}')})
+    assert (answer.status_code, answer.json()["code"]) == (422, "fps_not_needed")
 
 
 def test_a_stream_that_is_not_there_is_refused(client: TestClient) -> None:

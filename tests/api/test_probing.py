@@ -20,10 +20,11 @@ from api.probing import Prober
 from core.settings import make_settings
 from store.keys import Keys
 from store.settings import DeploymentSettings
-from tests.api.conftest import ROOT, VIDEO, Backend, client_of, wait_until
+from tests.api.conftest import VIDEO, Backend, client_of, wait_until
 from tests.api.test_submit import leftovers, post, rows
+from tests.inputs import INPUTS
 
-BIG = ROOT / "tests" / "data" / "inputs" / "big180.mp4"
+BIG = INPUTS / "big180.mp4"
 
 
 class Flood:

@@ -17,6 +17,7 @@ from api.app import create_app
 from store.models import Inspection
 from tests.api.conftest import ANNOTATIONS, TUS, VIDEO, Backend, client_of
 from tests.api.test_uploads import begin, patch
+from tests.inputs import INPUTS
 
 SMALL = b"not really a video"
 
@@ -71,8 +72,7 @@ def test_a_form_with_the_sample_starts_an_inspection(backend: Backend, client: T
 
 def test_what_tools_on_other_systems_write_is_read(backend: Backend, client: TestClient) -> None:
     """Parameters with a byte order mark, and null where there are no detections."""
-    inputs = Path(__file__).parents[1] / "data" / "inputs"
-    marked, empty = (inputs / "param_bom.json").read_bytes(), (inputs / "nulldet.json").read_bytes()
+    marked, empty = (INPUTS / "param_bom.json").read_bytes(), (INPUTS / "nulldet.json").read_bytes()
     answer = post(client, VIDEO.read_bytes(), parameters=marked, annotations=empty)
     assert answer.status_code == 202, answer.text
     assert answer.json()["parameters"]["preset"] == "draft"

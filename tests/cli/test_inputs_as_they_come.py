@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from cli.main import main
-
-INPUTS = Path(__file__).parents[1] / "data" / "inputs"
+from tests.core.making_videos import picture
+from tests.inputs import INPUTS
 
 
 def said(capsys: pytest.CaptureFixture[str], *words: str, expect: int = 0) -> str:
@@ -36,6 +37,10 @@ def as_json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
         ("concat_disc.ts", 96, 8.0, ["joined from 2 recordings, at frame 48"]),
         ("d_x265_rand.mp4", 44, 4.0, ["damaged: 4 frames lost after frame 18 at 1.500 s"]),
         ("d_x264g12_rand.mp4", 44, 4.0, ["damaged: 4 frames lost after frame 18 at 1.500 s"]),
+        ("s360_sar43.mp4", 96, 8.0, ["pixels are not square (4:3); frames are resampled"]),
+        ("raw.h264", 48, 4.0, ["they are made from 12 frames/s, as the stream's header states"]),
+        ("mjpeg_half.avi", 48, 4.0, ["damaged pictures: frame 20, 21, 22, 23, 24; they give no keypoints"]),
+        ("corrupt_mid.avi", 48, 4.0, ["damaged pictures: frame 23; they give no keypoints"]),
     ],
 )
 def test_probe_says_what_the_film_is_and_what_is_odd(
@@ -47,6 +52,44 @@ def test_probe_says_what_the_film_is_and_what_is_odd(
     text = said(capsys, "probe", video)
     assert text.count("\n") == 3 + len(notes)
     assert all(note in text for note in notes)
+
+
+def test_probe_and_check_say_that_a_film_is_interlaced(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    found = as_json(capsys, "probe", "s480i.mp4")
+    assert (found["n_frames"], found["average_rate"], found["interlaced_frames"]) == (48, "6/1", 48)
+    assert "interlaced: 48 of 48 frames; they are deinterlaced" in said(capsys, "probe", "s480i.mp4")
+    (tmp_path / "a.json").write_text('{"0.5": {}, "1.0": {}}', encoding="utf-8")
+    assert "video: interlaced: 48 of 48 frames" in said(capsys, "check", str(tmp_path / "a.json"), "s480i.mp4")
+
+
+@pytest.mark.parametrize("video", ["gpb1080.mp4", "m96.avi", "m96_drop15.avi"])
+def test_probe_has_nothing_to_say_of_ordinary_films(video: str, capsys: pytest.CaptureFixture[str]) -> None:
+    found = as_json(capsys, "probe", video)
+    wanted = {"gpb1080.mp4": (900, "30/1"), "m96.avi": (96, "12/1"), "m96_drop15.avi": (90, None)}[video]
+    assert found["n_frames"] == wanted[0]
+    assert wanted[1] in (None, found["average_rate"])
+    assert said(capsys, "probe", video).count("\n") == 3
+
+
+def test_a_rate_can_be_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert as_json(capsys, "probe", "raw.h264", "--fps", "24")["average_rate"] == "24/1"
+    assert "12 frames/s, as told" in said(capsys, "check", "k96.json", "raw.h264", "--fps", "12")
+    assert as_json(capsys, "check", "k96.json", "raw.h264", "--set", "input.fps=12")["video"]["times_from"] == "given"
+    assert "holds the times of its frames" in said(capsys, "probe", "m96.avi", "--fps", "24", expect=2)
+    assert "input.fps" in said(capsys, "probe", "raw.h264", "--fps", "0", expect=2)
+
+
+def test_pictures_are_probed_and_checked(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    folder = tmp_path / "pictures"
+    folder.mkdir()
+    for number in range(8, 12):
+        Image.fromarray(picture(number)).save(folder / f"{number}.png")
+    (tmp_path / "a.json").write_text('{"0": {}, "1": {}, "3": {}}', encoding="utf-8")
+    assert "(--fps N, input.fps)" in said(capsys, "probe", str(folder), expect=2)
+    assert "pictures: 160x128, png, 4 frames" in said(capsys, "probe", str(folder), "--fps", "2")
+    assert as_json(capsys, "probe", str(folder / "%d.png"), "--fps", "2")["duration_s"] == 2.0
+    read = as_json(capsys, "check", str(tmp_path / "a.json"), str(folder), "--fps", "2")
+    assert read["video"]["n_frames"] == 4
 
 
 def test_probe_refuses_large_pictures_by_their_header(capsys: pytest.CaptureFixture[str]) -> None:
@@ -65,6 +108,10 @@ def test_probe_reads_another_stream_when_told(capsys: pytest.CaptureFixture[str]
         ("nulldet.json", "twov.mp4", "video: stream 1 was read of"),
         ("nulldet.json", "cover_noflag.mp4", "video: stream 1 was read of"),
         ("nulldet.json", "d_x265_rand.mp4", "video: damaged: 4 frames lost after frame 18"),
+        ("nulldet.json", "s360_sar43.mp4", "video: pixels are not square (4:3)"),
+        ("k96.json", "raw.h264", "video: the file holds no times; they are made from 12 frames/s"),
+        ("nulldet.json", "mjpeg_half.avi", "video: damaged pictures: frame 20, 21, 22, 23, 24"),
+        ("nulldet.json", "corrupt_mid.avi", "video: damaged pictures: frame 23"),
     ],
 )
 def test_check_says_what_is_odd_of_the_video_too(

@@ -15,11 +15,11 @@ from cli import exits
 from cli.main import main
 from core.errors import BadInput, Cancelled, DiskFull, NoReconstruction, StageFailed
 from core.settings import option_names
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[2]
 VIDEO = str(ROOT / "samples" / "turbine.mp4")
 ANNOTATIONS = str(ROOT / "samples" / "turbine.json")
-INPUTS = ROOT / "tests" / "data" / "inputs"
 
 
 def call(*words: str, expect: int, capsys: pytest.CaptureFixture[str]) -> str:

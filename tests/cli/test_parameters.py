@@ -13,6 +13,7 @@ from cli import arguments, parameters
 from core.errors import BadInput
 from core.settings import PRESET_NAMES, make_settings, option_names
 from core.settings.describe import describe_options
+from tests.inputs import INPUTS
 
 
 def parse(*words: str) -> argparse.Namespace:
@@ -116,7 +117,7 @@ def test_refused_parameter_files(tmp_path: Path, text: str, part: str) -> None:
 
 
 def test_a_parameter_file_may_begin_with_a_byte_order_mark() -> None:
-    file = Path(__file__).parents[1] / "data" / "inputs" / "param_bom.json"
+    file = INPUTS / "param_bom.json"
     assert file.read_bytes().startswith(b"\xef\xbb\xbf")
     assert parameters.read_parameters(file).preset == "draft"
 

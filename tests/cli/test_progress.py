@@ -43,10 +43,8 @@ def test_plain_lines_come_now_and_then_in_a_long_stage() -> None:
     display = PlainDisplay(stream, clock=lambda: now[0])
     for step in range(10):
         now[0] = step * PLAIN_INTERVAL_S / 3
-        event = Event(EventKind.PROGRESS, step / 10, 60.0, "features", "features/000", total=3, stage_fraction=step / 10)
-        display.show(event)
-            Event(EventKind.PROGRESS, step / 10, 60.0, "features", "features/000", total=3, stage_fraction=step / 10)
-        )
+        share = step / 10
+        display.show(Event(EventKind.PROGRESS, share, 60.0, "features", "features/000", total=3, stage_fraction=share))
     assert stream.getvalue().splitlines() == [
         "[ 30%] features 30%  (about 1 min 00 s left)",
         "[ 60%] features 60%  (about 1 min 00 s left)",

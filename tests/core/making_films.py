@@ -43,21 +43,27 @@ class Listed:
     """What ffprobe lists of one stream."""
 
     pts: list[int]
+    """Presentation times in units of the stream; best effort where the file holds none."""
     index: int
+    times: list[str]
+    """The same in seconds, as ffprobe prints them."""
 
 
 def ffprobe_frames(path: Path, stream: str = "v:0") -> Listed:
     """ffprobe's frame list of a stream."""
     words = ["ffprobe", "-v", "error", "-select_streams", stream, "-of", "json"]
-    words += ["-show_entries", "frame=pts,best_effort_timestamp:stream=index", str(path)]
+    entries = "frame=pts,best_effort_timestamp,pts_time,best_effort_timestamp_time:stream=index"
+    words += ["-show_entries", entries, str(path)]
     said = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
     frames = [int(frame.get("pts", frame.get("best_effort_timestamp"))) for frame in said["frames"]]
-    return Listed(frames, int(said["streams"][0]["index"]))
+    times = [str(frame.get("pts_time", frame.get("best_effort_timestamp_time"))) for frame in said["frames"]]
+    return Listed(frames, int(said["streams"][0]["index"]), times)
 
 
-def ffmpeg_pixels(path: Path, stream: str, width: int, height: int) -> NDArray[np.uint8]:
-    """(n, h, w, 3) RGB of every frame of a stream as ffmpeg decodes it."""
+def ffmpeg_pixels(path: Path, stream: str, width: int, height: int, filters: str = "") -> NDArray[np.uint8]:
+    """(n, h, w, 3) RGB of every frame of a stream as ffmpeg decodes it and its `filters` make it."""
     words = ["ffmpeg", "-v", "error", "-i", str(path), "-map", f"0:{stream}", "-fps_mode", "passthrough"]
+    words += ["-vf", filters] if filters else []
     words += ["-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
     data = subprocess.run(words, check=True, capture_output=True).stdout
     return np.frombuffer(data, np.uint8).reshape(-1, height, width, 3)

@@ -15,7 +15,13 @@ from core.video.still import write_still
 SIZE = (200, 160)
 
 
-def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] | None = None, step_px: int = 6) -> Path:
+def frames_folder(
+    folder: Path,
+    roles: Sequence[str],
+    times_s: Sequence[float] | None = None,
+    step_px: int = 6,
+    damaged: Sequence[int] = (),
+) -> Path:
     """Write images, ``frames.json`` and ``crop.json``; frame i shows the wall from `step_px` x its time."""
     times = list(times_s) if times_s is not None else [float(i) for i in range(len(roles))]
     rng = np.random.default_rng(0)
@@ -29,6 +35,6 @@ def frames_folder(folder: Path, roles: Sequence[str], times_s: Sequence[float] |
         cv2.imwrite(str(folder / "images" / f"{index:04d}.jpg"), wall[: SIZE[1], left : left + SIZE[0]])
         rows.append(Frame(index, 2 * index, index, time, "", Role(role)))
     crop = Crop(10, 20, 10 + SIZE[0], 20 + SIZE[1], 250, 200)
-    write_frames(folder, RunFrames(tuple(rows)), crop)
+    write_frames(folder, RunFrames(tuple(rows)), crop, damaged)
     write_still(folder, np.zeros((crop.height, crop.width), bool))
     return folder

@@ -14,6 +14,7 @@ import pytest
 
 from core.intake import LimitFields, answer
 from core.video.decode import DecodedFrame, VideoReader
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[2]
 VIDEO = ROOT / "samples" / "turbine.mp4"
@@ -43,7 +44,7 @@ def test_what_is_wrong_is_named(change: dict[str, Any], code: str) -> None:
     assert found["error"]["code"] == code
 
 
-BIG = ROOT / "tests" / "data" / "inputs" / "big180.mp4"
+BIG = INPUTS / "big180.mp4"
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from core.stage import Facts, StageTask
 from core.stages import gallery, map_defects, timeline
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.video.probe import probe_video
+from tests.core.making_films import ffmpeg, ffmpeg_pixels
 from tests.core.making_videos import every_ms, make_video
 
 DEPTH, FOCAL, N_FRAMES, STEP = 4.0, 100.0, 8, 0.1
@@ -267,3 +269,39 @@ def test_without_detections_every_file_exists(inputs: Path, tmp_path: Path) -> N
     assert (out / "timeline" / "mesh_defects.glb").stat().st_size > 1000
     assert len(read_mesh(out / "map_defects" / "defect_points.ply").vertices) == 0
     assert (out / "gallery" / "mesh_1.png").exists()
+
+
+@pytest.mark.tool("ffmpeg")
+def test_pictures_of_the_gallery_are_deinterlaced_and_square(inputs: Path, tmp_path: Path) -> None:
+    """A film of as many frames, each of two fields, with pixels of 4:3."""
+    root = tmp_path / "inputs"
+    shutil.copytree(inputs, root)
+    source = make_video(tmp_path / "source.mp4", every_ms(40, 2 * N_FRAMES))
+    fields = (
+        "-vf",
+        "scale=120:128,setsar=4/3,interlace=lowpass=off",
+        "-c:v",
+        "libx264",
+        "-qp",
+        "4",
+        "-x264-params",
+        "tff=1",
+    )
+    film = ffmpeg(tmp_path / "fields.mp4", "-i", source, *fields)
+    film.replace(root / "video.mp4")
+    table = probe_video(root / "video.mp4")
+    assert (table.info.width, table.info.interlaced_frames, table.info.n_frames) == (160, N_FRAMES, N_FRAMES)
+    table.write(root / "probe")
+    out, _ = run_all(root, tmp_path / "out")
+    shown = ffmpeg_pixels(root / "video.mp4", "v:0", 160, 128, "bwdif=mode=send_frame,scale=iw*sar:ih,setsar=1")
+    combed = ffmpeg_pixels(root / "video.mp4", "v:0", 160, 128, "scale=iw*sar:ih,setsar=1")
+    drawn = sorted((out / "gallery").glob("frame_*.jpg"))
+    assert drawn
+    for path in drawn:
+        coded = cv2.imread(str(path))
+        assert coded is not None
+        image, frame = coded[..., ::-1].astype(int), int(path.stem[6:])
+        right, wrong = (np.abs(image - films[frame]).mean(axis=2) for films in (shown, combed))
+        apart = np.abs(shown[frame].astype(int) - combed[frame]).mean(axis=2) > 8
+        assert apart.sum() > 100
+        assert right[apart].mean() < 0.6 * wrong[apart].mean(), "lines and letters are drawn on few of the pixels"

@@ -132,6 +132,22 @@ def test_a_folder_may_have_any_name(place: Workplace, tmp_path: Path) -> None:
     assert strange.run().computed == 0
 
 
+def test_a_folder_of_pictures_is_the_same_video_until_one_of_them_changes(place: Workplace) -> None:
+    """The toy stages cannot read it; what counts is which input the output folder belongs to."""
+    place.video.unlink()
+    place.video.mkdir()
+    for number in range(3):
+        (place.video / f"{number}.png").write_bytes(bytes([number]))
+    (place.video / "notes.txt").write_text("no part of it")
+    place.run()
+    (place.video / "notes.txt").unlink()
+    place.run()
+    (place.video / "1.png").write_bytes(b"another picture")
+    with pytest.raises(BadInput) as caught:
+        place.run()
+    assert caught.value.code == "another_input"
+
+
 def test_a_folder_with_files_of_somebody_else_is_refused(place: Workplace) -> None:
     place.out.mkdir()
     (place.out / "summary.json").write_text("mine")

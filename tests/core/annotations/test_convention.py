@@ -24,8 +24,8 @@ from core.settings.groups import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameRow, FrameTable, VideoInfo
 from tests.core.making_videos import make_video
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 EVEN = [40 * i for i in range(50)]
 UNEVEN = [0]
 for _i in range(1, 60):

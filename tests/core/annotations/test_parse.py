@@ -18,6 +18,7 @@ from core.annotations.summary import summarise
 from core.errors import BadInput
 from core.geometry.boxes import box_iou
 from core.scene.detection import Mask
+from tests.inputs import INPUTS
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "turbine.json"
 DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}
@@ -158,7 +159,7 @@ def parsed(value: object) -> tuple[Annotations | None, BadInput | None]:
 
 
 def test_null_instead_of_a_list_is_an_empty_list() -> None:
-    file = Path(__file__).parents[2] / "data" / "inputs" / "nulldet.json"
+    file = INPUTS / "nulldet.json"
     annotations = load_annotations(file)
     assert (len(annotations.entries), annotations.detections) == (96, ())
     box = {"label": "dent", "bbox": [0.1, 0.1, 0.2, 0.2], "score": 1}

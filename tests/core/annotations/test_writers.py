@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,9 +18,10 @@ from core.annotations.convention import Fitted, fit_convention
 from core.video.decode import iter_frames
 from core.video.probe import probe_video
 from core.video.table import FrameTable
+from tests.core.making_films import ffmpeg, ffprobe_frames
 from tests.core.making_videos import every_ms, make_video
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 VARIABLE = [0, 33, 66, 99, 196, 229, 262, 295, 392, 500, 533, 566, 640, 673, 706, 739, 836, 869, 902, 1000]
 DROPPED = [40 * i for i in range(40) if i % 7 != 3]
 
@@ -77,7 +77,7 @@ WRITERS: dict[str, Callable[[Film, int], str]] = {
     "FFmpeg": lambda film, i: f"{float(film.table.rows[i].pts * film.table.info.time_base):.6f}",
     "player, 2 decimals": lambda film, i: cut(film.table.time(i), 2),
     "player, 3 decimals": lambda film, i: cut(film.table.time(i), 3),
-    "player, clock": lambda film, i: f"00:00:0{cut(film.table.time(i), 3)}",
+    "player, clock": lambda film, i: f"00:00:{cut(film.table.time(i), 3):0>6}",
 }
 FROM_ONE = {"OpenCV, frames read / rate", "numbers from 1", "Label Studio"}
 
@@ -148,8 +148,7 @@ MAKES = {
 def test_ffprobe_lists_the_frames_of_the_table(tmp_path: Path, name: str) -> None:
     source = ["-f", "lavfi", "-i", "testsrc=size=128x96:rate=30:duration=1.5", "-bf", "2", "-c:v", "mpeg4"]
     path = tmp_path / name
-    subprocess.run(["ffmpeg", "-v", "error", *source, *MAKES[name], path.as_posix()], check=True)
-    listed = frames_of_ffprobe(path)
+    listed = ffprobe_frames(ffmpeg(path, *source, *MAKES[name])).times
     film = film_of(path)
     for keys in (listed, [f"{i / film.fps:.6f}" for i in range(len(film.msec))], [f"{m:.0f}" for m in film.msec]):
         fitted = fit(film, keys)
@@ -161,11 +160,43 @@ def test_ffprobe_lists_the_frames_of_the_table(tmp_path: Path, name: str) -> Non
 @pytest.mark.parametrize("name", ["m96.avi", "m96_drop15.avi"])
 def test_empty_chunks_are_no_frames(name: str) -> None:
     table = probe_video(INPUTS / name)
-    assert [f"{float(row.pts * table.info.time_base):.6f}" for row in table.rows] == frames_of_ffprobe(INPUTS / name)
+    assert [f"{float(row.pts * table.info.time_base):.6f}" for row in table.rows] == ffprobe_frames(INPUTS / name).times
 
 
-def frames_of_ffprobe(path: Path) -> list[str]:
-    """Presentation times to six decimals, as ffprobe prints them."""
-    asked = ["-select_streams", "v:0", "-show_entries", "frame=pts_time", "-of", "json"]
-    told = subprocess.run(["ffprobe", "-v", "error", *asked, str(path)], capture_output=True, text=True, check=True)
-    return [frame["pts_time"] for frame in json.loads(told.stdout)["frames"]]
+TIMELESS = [
+    "OpenCV, frames before / rate",
+    "OpenCV, frames read / rate",
+    "OpenCV, not rounded",
+    "CVAT",
+    "numbers from 1",
+]
+
+
+@pytest.mark.parametrize("writer", [*TIMELESS, "Label Studio"])
+def test_keys_of_a_raw_stream_by_the_rate_that_opencv_assumes(writer: str) -> None:
+    """12 frames/s by the stream's own header; OpenCV says 25, and gives every frame the time 0."""
+    film = film_of(INPUTS / "raw.h264")
+    assert (film.fps, film.table.info.average_rate, set(film.msec)) == (25.0, Fraction(12), {0.0})
+    fitted = fit(film, [WRITERS[writer](film, i) for i in range(48)])
+    assert list(fitted.reading.frames.values()) == list(range(48))
+    assert fitted.flags == ()
+
+
+@pytest.mark.parametrize("writer", [name for name in WRITERS if name not in ("OpenCV, milliseconds", "FFmpeg")])
+def test_keys_of_pictures_by_the_rate_that_was_told(writer: str, tmp_path: Path) -> None:
+    for number in range(20):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), np.full((64, 64, 3), 12 * number, np.uint8))
+    table = probe_video(tmp_path, fps=12.5)
+    film = Film(tmp_path, table, 12.5, [80.0 * i for i in range(20)])
+    fitted = fit(film, [WRITERS[writer](film, i) for i in range(20)])
+    assert list(fitted.reading.frames.values()) == list(range(20))
+
+
+@pytest.mark.tool("ffmpeg")
+@pytest.mark.parametrize("writer", WRITERS)
+@pytest.mark.parametrize("rate", ["5.6", "0.5"])
+def test_keys_at_low_rates(writer: str, rate: str, tmp_path: Path) -> None:
+    source = ["-f", "lavfi", "-i", f"testsrc=size=128x96:rate={rate}", "-frames:v", "12", "-c:v", "mpeg4"]
+    film = film_of(ffmpeg(tmp_path / "slow.mp4", *source))
+    fitted = fit(film, [WRITERS[writer](film, i) for i in range(12)])
+    assert list(fitted.reading.frames.values()) == list(range(12))

@@ -14,8 +14,8 @@ from core.stage import StageTask
 from core.stages import annotations as annotations_stage
 from core.stages import probe
 from tests.core.making_record import full_record
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 VIDEO = INPUTS / "m96.avi"
 
 

@@ -19,8 +19,8 @@ from core.video.decode import VideoReader, iter_frames
 from core.video.probe import probe_video
 from tests.core.making_films import SAMPLE, ffmpeg, ffmpeg_pixels, ffprobe_frames, film
 from tests.core.making_videos import cut_to, every_ms, make_video
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 ROOT = Path(__file__).parents[3]
 
 X264 = ("-c:v", "libx264", "-preset", "ultrafast")
@@ -136,6 +136,12 @@ KINDS = {
     "pictures.avi": ("-c:v", "mjpeg"),
     "ps.mpg": ("-c:v", "mpeg2video"),
     "fragments.mp4": (*X264_B, "-movflags", "frag_keyframe+empty_moov"),
+    "tape.dv": ("-vf", "scale=720:576", "-pix_fmt", "yuv420p", "-r", "25"),
+    "small.gif": (),
+    "b-frames.nut": ("-c:v", "mpeg4", "-bf", "2"),
+    "plain.y4m": ("-pix_fmt", "yuv420p"),
+    "real.rm": ("-c:v", "rv20"),
+    "plain.ivf": ("-c:v", "libvpx", "-b:v", "200k"),
 }
 
 
@@ -145,7 +151,8 @@ def test_an_intact_film_is_what_ffprobe_lists_and_no_damage_is_invented(name: st
     path = film(tmp_path / name, *KINDS[name])
     table = probe_video(path)
     assert (table.info.damage, table.info.repaired_times, table.info.joined) == ((), 0, ())
-    assert [row.pts for row in table.rows] == ffprobe_frames(path).pts
+    assert (table.info.damaged_pictures, table.info.times_from) == ((), "file")
+    assert [f"{float(row.pts * table.info.time_base):.6f}" for row in table.rows] == ffprobe_frames(path).times
 
 
 @pytest.mark.tool("ffmpeg")

@@ -16,8 +16,8 @@ from core.video.decode import iter_frames
 from core.video.probe import probe_video
 from core.video.table import FrameTable, VideoInfo
 from tests.core.making_videos import cut_to, every_ms, make_video, picture, set_display_matrix
+from tests.inputs import INPUTS
 
-INPUTS = Path(__file__).parents[2] / "data" / "inputs"
 SAMPLE = Path(__file__).parents[3] / "samples" / "turbine.mp4"
 
 

@@ -72,6 +72,18 @@ def test_a_broken_frame_takes_those_along_that_were_decoded_after_it() -> None:
     assert decoder.end() == [(1, 3)]
 
 
+def test_a_frame_of_which_the_decoder_complains_counts_as_broken() -> None:
+    decoder = Decoder()
+    decoder.send(0, 1, 2)
+    decoder.come(Frame(0, 0, key_frame=True))
+    decoder.sound.came(Frame(1, 1), Fraction(1), broken=True)
+    decoder.come(Frame(2, 2))
+    decoder.send(3)
+    decoder.come(Frame(3, 3, key_frame=True))
+    assert decoder.shown == [0, 3]
+    assert decoder.end() == [(1, 2)]
+
+
 def test_a_frame_that_never_comes_is_missed_after_the_longest_delay_a_decoder_has() -> None:
     decoder = Decoder()
     decoder.send(0, 1)
@@ -85,6 +97,23 @@ def test_a_frame_that_never_comes_is_missed_after_the_longest_delay_a_decoder_ha
     decoder.come(Frame(number + 1, number + 1, key_frame=True))
     assert decoder.shown == [0, number + 1]
     assert decoder.end() == [(1, REORDERING + 2)]
+
+
+def test_broken_frames_that_lead_to_the_first_keyframe_were_never_lost() -> None:
+    """A recording that begins in an open group: the frames shown before its first keyframe refer to what it lacks."""
+    decoder = Decoder()
+    decoder.send(3, 1, 2, 4)
+    decoder.come(Frame(1, 1, is_corrupt=True), Frame(2, 2, is_corrupt=True), Frame(0, 3, key_frame=True), Frame(3, 4))
+    assert decoder.shown == [0, 3]
+    assert decoder.end() == []
+
+
+def test_a_broken_frame_that_comes_out_before_the_first_keyframe_is_lost_when_it_is_shown_after_it() -> None:
+    decoder = Decoder()
+    decoder.send(0, 1, 2, 3)
+    decoder.come(Frame(1, 1, is_corrupt=True), Frame(0, 0, key_frame=True), Frame(2, 2), Frame(3, 3, key_frame=True))
+    assert decoder.shown == [0, 3]
+    assert decoder.end() == [(1, 2)]
 
 
 def test_what_cannot_decode_before_the_first_keyframe_was_never_lost() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from cli.annotation_file import add_format
 from cli.parser import Parser
 from cli.remote_arguments import add_remote_commands
 from core.settings import PRESET_NAMES
@@ -28,8 +29,10 @@ def parser() -> argparse.ArgumentParser:
     check = _add(commands, "check", "say what was understood of an annotation file")
     check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
     check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
+    add_format(check)
     _set(check, "set one option of the input (repeatable), e.g. input.time_convention=index to try a reading")
     _json(check)
+    _convert(commands)
     _questions(commands)
     options = _add(commands, "options", "list every option: meaning, unit, default, range, source")
     _preset(options)
@@ -45,6 +48,16 @@ def _top() -> argparse.ArgumentParser:
         description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
         epilog=_EXIT_CODES,
     )
+
+
+def _convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    convert = _add(commands, "convert", "write the annotations of another tool in our own form")
+    convert.add_argument("annotations", type=Path, metavar="ANNOTATIONS", help="file or folder of any format read")
+    convert.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="the video they are of: times get exact")
+    convert.add_argument("--out", type=Path, required=True, metavar="FILE", help="JSON to write")
+    add_format(convert)
+    _set(convert, "set one option of the input (repeatable)")
+    _json(convert)
 
 
 def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -68,7 +81,10 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run = _add(commands, "run", "inspect: video and annotations in, result folder out", epilog=_EXIT_CODES)
     run.add_argument("video", type=Path, metavar="VIDEO", help="any file that FFmpeg decodes")
-    run.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON; see docs/annotations.md")
+    run.add_argument(
+        "annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="file or folder; see docs/annotations.md"
+    )
+    add_format(run)
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)
     _set(run, "set one option (repeatable); `bladeatlas options` lists them")

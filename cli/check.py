@@ -4,28 +4,30 @@ from __future__ import annotations
 
 import argparse
 import json
+from pathlib import Path
 from typing import Any
 
+from cli.annotation_file import annotation_file, with_format
 from cli.parameters import parse_assignment
 from cli.probe import notes
 from cli.terminal import say, say_json
-from core.annotations.parse import load_annotations
+from core.annotations.load import load_annotations
+from core.annotations.model import Annotations
 from core.annotations.placed import place
 from core.annotations.summary import AnnotationSummary, summarise
 from core.errors import BadInput
 from core.settings import make_settings
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video
+from core.video.table import FrameTable
 
 
 def command(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
-    options = input_options(parsed.assignments)
-    annotations = load_annotations(parsed.annotations)
-    placed, video = None, None
-    if parsed.video:
-        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream)
-        placed, video = place(annotations, table, options.time_convention), table.info
+    options = input_options(with_format(parsed))
+    annotations, table = read_with_video(parsed.annotations, parsed.video, options)
+    placed = None if table is None else place(annotations, table, options.time_convention)
+    video = None if table is None else table.info
     summary = summarise(annotations, placed)
     if parsed.json:
         found = {**summary.to_dict(), "video": None if video is None else video.to_dict()}
@@ -46,9 +48,18 @@ def input_options(assignments: list[str]) -> InputSettings:
     return make_settings("default", options).input
 
 
+def read_with_video(path: Path, video: Path | None, options: InputSettings) -> tuple[Annotations, FrameTable | None]:
+    """Annotations, held against the frames of the video when one is given."""
+    table = None if video is None else probe_video(video, allow_truncated=True, stream=options.video_stream)
+    frame = None if table is None else (table.info.width, table.info.height)
+    with annotation_file(path) as file:
+        return load_annotations(file, frame, options.annotation_format), table
+
+
 def lines(summary: AnnotationSummary) -> list[str]:
     """The summary in a few lines."""
     found = [
+        f"  format: {summary.format}",
         f"  labels: {_counts(summary.detections_by_label)}",
         f"  masks: {_counts(summary.masks_by_label)}",
         f"  detections with an outline: {summary.n_with_polygon}, with a track: {summary.n_with_track}",

@@ -58,7 +58,13 @@ STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
         _spec("probe", "input.allow_truncated", "input.video_stream", version=2, reads_video=True, weight=0.2),
-        _spec("annotations", "input.time_convention", version=3, reads_annotations=True, weight=0.1),
+        _spec(
+            "annotations",
+            *_options("input", "time_convention", "annotation_format"),
+            version=4,
+            reads_annotations=True,
+            weight=0.1,
+        ),
         _spec("frames", "frames", "roi", "overrides", version=2, reads_video=True, weight=0.3),
         _spec("features", "features", version=2, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec(

@@ -18,7 +18,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from core.annotations.parse import load_annotations
+from core.annotations.foreign.unreadable import looks_like_video
+from core.annotations.load import load_annotations
 from core.errors import BadInput, BladeAtlasError
 from core.roi import crop_of
 from core.settings import Settings
@@ -35,10 +36,32 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     The first two frames are decoded, the annotations are read in full. What only a full pass can find
     (damage further on, an interval outside the video) the stages say.
     """
-    check_video(video, settings.input.video_stream)
+    found = _checked(video, annotations, settings.input.video_stream, PIXELS_ONLY)
     if annotations is not None:
-        load_annotations(annotations)
+        load_annotations(annotations, (found["width"], found["height"]), settings.input.annotation_format)
     check_roi(settings)
+
+
+def _checked(video: Path, annotations: Path | None, stream: int | None, limits: VideoLimits) -> dict[str, Any]:
+    """What `check_video` finds; when the video is none and the annotations are one, that is what is wrong."""
+    try:
+        return check_video(video, stream, limits)
+    except BadInput as error:
+        if error.code != "not_a_video" or annotations is None or not _is_video(annotations):
+            raise
+        raise BadInput(
+            "the video and the annotations are in the wrong order: the first file is no video, the second is one",
+            code="swapped_files",
+            where="video",
+        ) from None
+
+
+def _is_video(path: Path) -> bool:
+    try:
+        with path.open("rb") as stream:
+            return looks_like_video(stream.read(512))
+    except OSError:
+        return False
 
 
 def check_video(video: Path, stream: int | None = None, limits: VideoLimits = PIXELS_ONLY) -> dict[str, Any]:
@@ -84,19 +107,19 @@ def answer(question: dict[str, Any]) -> dict[str, Any]:
     """Check what a question names.
 
     Args:
-        question: ``video`` and optionally ``annotations`` (paths), ``video_stream``, ``roi`` (shares), ``limits``
-            (`VideoLimits`).
+        question: ``video`` and optionally ``annotations`` (paths), ``annotation_format``, ``video_stream``, ``roi``
+            (shares), ``limits`` (`VideoLimits`).
 
     Returns:
         ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
     """
     try:
-        found = check_video(
-            Path(question["video"]), question.get("video_stream"), VideoLimits(**question.get("limits", {}))
-        )
+        path = Path(question["annotations"]) if question.get("annotations") else None
+        limits = VideoLimits(**question.get("limits", {}))
+        found = _checked(Path(question["video"]), path, question.get("video_stream"), limits)
         crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
-        path = question.get("annotations")
-        annotations = load_annotations(Path(path) if path else None)
+        frame = (found["width"], found["height"])
+        annotations = load_annotations(path, frame, question.get("annotation_format", "auto"))
     except BladeAtlasError as error:
         return {"error": error.to_dict()}
     except MemoryError:

@@ -53,6 +53,12 @@ class Annotations:
     entries: tuple[Entry, ...] = ()
     warnings: tuple[str, ...] = ()
     """Oddities that were tolerated, each naming its place."""
+    format: str = "bladeatlas"
+    """Name of the format that the file was of."""
+    n_frames: int | None = None
+    """Frames of the video as the tool that wrote the file counted them; None when it does not say."""
+    clocks: tuple[str, ...] = ()
+    """Clocks that the keys can follow by the format (`core.annotations.clocks`); none = any."""
 
     @property
     def detections(self) -> tuple[Detection, ...]:

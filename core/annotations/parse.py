@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from core.annotations import checks
 from core.annotations.model import Annotations, Detection, Entry, Mask, Polygon
-from core.annotations.read import read_json
 from core.geometry.boxes import Box, box_iou
 
 MIN_MASK_IOU = 0.5
 """A mask with the same label and at least this overlap of boxes belongs to a detection."""
-
-
-def load_annotations(path: Path | None) -> Annotations:
-    """Read and check an annotation file; no file gives no annotations. Raises `BadInput` only."""
-    return Annotations() if path is None else parse_annotations(read_json(path))
 
 
 def parse_annotations(value: Any) -> Annotations:

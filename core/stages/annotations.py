@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.annotations.parse import load_annotations
+from core.annotations.load import load_annotations
 from core.annotations.placed import place, write_placed
 from core.annotations.summary import summarise
 from core.stage import StageResult, StageTask
@@ -14,13 +14,15 @@ def run(task: StageTask) -> StageResult:
 
     Without an annotation file all are empty.
     """
-    annotations = load_annotations(task.annotations)
+    table, wanted = FrameTable.read(task.input("probe")), task.settings.input
+    annotations = load_annotations(task.annotations, (table.info.width, table.info.height), wanted.annotation_format)
     task.report(1, 2, f"{len(annotations.entries)} time keys")
-    placed = place(annotations, FrameTable.read(task.input("probe")), task.settings.input.time_convention)
+    placed = place(annotations, table, wanted.time_convention)
     write_placed(placed, task.out)
     summary = summarise(annotations, placed)
     return StageResult(
         {
+            "format": summary.format,
             "n_detections": summary.n_detections,
             "n_keys": summary.n_keys,
             "n_annotated_frames": summary.n_annotated_frames,

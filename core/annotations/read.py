@@ -16,6 +16,10 @@ MAX_BYTES = 64 * 1024 * 1024
 20 MB. 64 MiB of the most wasteful JSON need 1.9 GiB once parsed (measured), half of what a stage may use."""
 
 
+_CUT_WORD = 5
+"""Characters of the longest word of JSON, false."""
+
+
 def read_bytes(path: Path) -> bytes:
     """The content of an annotation file. The size is looked at before anything is read.
 
@@ -71,7 +75,9 @@ def _guess(error: json.JSONDecodeError, text: str) -> str:
     """What is probably wrong with the whole file."""
     if error.msg == "Extra data" and text[: error.pos].rstrip(" \t\r")[-1:] == "\n":
         return "; this seems to be one JSON value for each line, of which only one is read"
-    if error.msg.startswith("Unterminated string") or error.pos >= len(text.rstrip()):
+    rest = text[error.pos :].strip()
+    # A word or number that ends with the file has its error a few characters before the end.
+    if error.msg.startswith("Unterminated string") or (len(rest) <= _CUT_WORD and not rest.endswith(("}", "]"))):
         return "; the file seems to be cut off" if text.strip() else "; the file is empty"
     return ""
 

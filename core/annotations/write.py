@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from core.annotations.clocks import FRAME_NUMBERS
 from core.annotations.model import Annotations, Detection, Mask
 from core.annotations.placed import PlacedAnnotations
 from core.errors import BadInput
@@ -20,7 +21,7 @@ def own_form(annotations: Annotations) -> dict[str, Any]:
     Raises:
         BadInput: the keys are frame numbers, which mean a time only together with a video.
     """
-    if annotations.clocks:
+    if any(clock in FRAME_NUMBERS for clock in annotations.clocks):
         raise BadInput(
             "the annotations name frames by their numbers; which times these are depends on the video, so name it, too",
             code="annotations_need_video",

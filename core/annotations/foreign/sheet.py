@@ -30,8 +30,8 @@ COUNTED: tuple[Clock, ...] = ("index", "index+1")
 """Frame numbers, from 0 or from 1: that is fitted."""
 FROM_ZERO: tuple[Clock, ...] = ("index",)
 FROM_ONE: tuple[Clock, ...] = ("index+1",)
-SECONDS: tuple[Clock, ...] = ()
-"""Times, whose reading is fitted as that of our own form is."""
+SECONDS: tuple[Clock, ...] = ("pts", "container")
+"""Times of a player: of the video's own frames, or, where these do not fit, of what was on the screen."""
 
 ANY_DROPS: Mapping[str, str] = {
     "no area": "shape without area",

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 from core.annotations.checks import as_label, as_score, as_track_id, shown
 from core.annotations.foreign.sheet import Picture, Points, Shape, Sheet, Size
 from core.annotations.masks import BLADE_LABEL
 from core.annotations.model import Annotations, Detection, Entry, Mask, Polygon
+from core.annotations.parse import has_area
 from core.errors import BadInput
 from core.geometry.boxes import Box
 
@@ -116,9 +116,3 @@ def _around(corners: Points) -> Box | None:
 
 def _cut(value: float) -> float:
     return min(1.0, max(0.0, value))
-
-
-def has_area(polygon: Sequence[tuple[float, float]]) -> bool:
-    """Whether a polygon has a width and a height that are more than rounding."""
-    doubled = sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in zip(polygon, (*polygon[1:], polygon[0]), strict=True))
-    return abs(doubled) > 1e-12

@@ -16,6 +16,7 @@ from core.annotations.model import Annotations
 from core.annotations.placed import place
 from core.annotations.summary import AnnotationSummary, summarise
 from core.errors import BadInput
+from core.intake import in_what_order
 from core.settings import make_settings
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video
@@ -50,7 +51,12 @@ def input_options(assignments: list[str]) -> InputSettings:
 
 def read_with_video(path: Path, video: Path | None, options: InputSettings) -> tuple[Annotations, FrameTable | None]:
     """Annotations, held against the frames of the video when one is given."""
-    table = None if video is None else probe_video(video, allow_truncated=True, stream=options.video_stream)
+    table = None
+    if video is not None:
+        try:
+            table = probe_video(video, allow_truncated=True, stream=options.video_stream)
+        except BadInput as error:
+            raise in_what_order(error, path) from None
     frame = None if table is None else (table.info.width, table.info.height)
     with annotation_file(path) as file:
         return load_annotations(file, frame, options.annotation_format), table

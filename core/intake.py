@@ -43,17 +43,21 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
 
 
 def _checked(video: Path, annotations: Path | None, stream: int | None, limits: VideoLimits) -> dict[str, Any]:
-    """What `check_video` finds; when the video is none and the annotations are one, that is what is wrong."""
     try:
         return check_video(video, stream, limits)
     except BadInput as error:
-        if error.code != "not_a_video" or annotations is None or not _is_video(annotations):
-            raise
-        raise BadInput(
-            "the video and the annotations are in the wrong order: the first file is no video, the second is one",
-            code="swapped_files",
-            where="video",
-        ) from None
+        raise in_what_order(error, annotations) from None
+
+
+def in_what_order(error: BadInput, annotations: Path | None) -> BadInput:
+    """The error of a video that is none; when the annotations are one, that they are in the wrong order."""
+    if error.code != "not_a_video" or annotations is None or not _is_video(annotations):
+        return error
+    return BadInput(
+        "the video and the annotations are in the wrong order: what should be the annotations is a video",
+        code="swapped_files",
+        where="video",
+    )
 
 
 def _is_video(path: Path) -> bool:

@@ -16,7 +16,7 @@ DROPS = {
     "keypoints": "set of keypoints",
     "mask": "mask that cannot be unpacked",
     "part": "further part of an outline",
-    "picture": "annotation that names no picture of the file",
+    "picture": "annotation without a picture in the file",
 }
 
 

@@ -28,12 +28,11 @@ DROPS = {
     "ellipse": "ellipse",
     "keypoint": "keypoint",
     "vector": "vector",
-    "choice": "answer that is no shape",
+    "choice": "answer without a shape",
     "mask": "mask that cannot be unpacked",
     "part": "further part of an outline",
     "annotator": "annotation of a further annotator",
     "timeline": "stretch of a timeline",
-    "turned": "turned box of a video that was read upright",
 }
 _BASES = {
     "videorectangle": "videorectangle",
@@ -162,7 +161,7 @@ def _video(results: Sequence[tuple[dict[str, Any], float | None]], where: str, s
         value = as_object(region.get("value"), f"{here}.value")
         keyframes = [_keyframe(one, here) for one in objects(value.get("sequence"), f"{here}.sequence")]
         if any(one.rotation_deg for one in keyframes):
-            sheet.drop("turned")
+            sheet.note("turned boxes of videos of Label Studio were read upright")
         last = value.get("framesCount")
         last = None if last is None else whole(last, f"{here}.framesCount")
         sheet.counted_frames = sheet.counted_frames or last

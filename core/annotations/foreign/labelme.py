@@ -17,7 +17,7 @@ DROPS = {
     "points": "set of points",
     "mask": "mask that cannot be unpacked",
     "part": "further part of an outline",
-    "other": "shape that LabelMe does not have",
+    "other": "shape of another kind",
 }
 
 

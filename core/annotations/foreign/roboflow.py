@@ -9,7 +9,7 @@ from core.annotations.checks import as_list, as_object
 from core.annotations.foreign.sheet import FROM_ZERO, SECONDS, Shape, Sheet, frame_number, number_in_name, seconds_key
 from core.annotations.foreign.values import centre_box, number, numbers, objects, points, size_of, text, track_of, whole
 
-DROPS = {"keypoints": "set of keypoints", "class": "class of a whole picture", "frame": "frame without its own list"}
+DROPS = {"keypoints": "set of keypoints", "class": "class of a whole picture", "frame": "frame without a list"}
 _NO_MODELS = ("time_offset", "frame_offset", "fps")
 
 

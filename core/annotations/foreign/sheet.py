@@ -142,12 +142,15 @@ class Sheet:
 
 
 def counted(what: str, count: int) -> str:
-    """A number of things with its verb: "1 ellipse is", "12 ellipses are", "3 boxes that are turned are"."""
-    if count == 1:
-        return f"1 {what} is"
+    """A number of things with its verb: "1 ellipse is", "12 ellipses are"."""
+    return f"1 {what} is" if count == 1 else f"{count} {plural(what)} are"
+
+
+def plural(what: str) -> str:
+    """The plural of a thing: "ellipses", "boxes that are turned", "classes of a picture"."""
     head = _HEAD.split(what, maxsplit=1)[0]
-    head = head[:-1] + "ie" if head.endswith("y") else head + "e" if head.endswith(("x", "s", "sh")) else head
-    return f"{count} {head}s{what[len(_HEAD.split(what, maxsplit=1)[0]) :]} are"
+    stem = head[:-1] + "ie" if head.endswith("y") else head + "e" if head.endswith(("x", "s", "sh", "ch")) else head
+    return f"{stem}s{what[len(head) :]}"
 
 
 def frame_number(value: int, name: str) -> str:

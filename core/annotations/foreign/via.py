@@ -18,7 +18,7 @@ DROPS = {
     "line": "line",
     "polyline": "polyline",
     "segment": "stretch of time",
-    "other": "shape that is not known",
+    "other": "shape of an unknown kind",
 }
 _SHAPES_3 = {1: "point", 2: "rect", 3: "circle", 4: "ellipse", 5: "line", 6: "polyline", 7: "polygon", 8: "rect"}
 """Numbers of shapes in version 3; the extreme rectangle (8) is written as a rectangle."""

@@ -120,7 +120,7 @@ def test_coco_tells_frames_tracks_and_masks() -> None:
     assert (second.polygon, third.polygon) == (((0, 0), (0.5, 0), (0.5, 0.5)), None)
     assert annotations.warnings == (
         "1 further part of an outline is not read",
-        "1 annotation that names no picture of the file is not read",
+        "1 annotation without a picture in the file is not read",
         "1 set of keypoints is not read",
     )
 

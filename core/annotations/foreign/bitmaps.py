@@ -25,6 +25,8 @@ MAX_RUNS = 1 << 22
 _MAX_PNG = 1 << 24
 """Bytes of one unpacked mask picture."""
 _CHANNELS = 4
+MAX_EDGES = 1 << 20
+"""Pixels of a mask that differ from their left neighbour, at most: above it is noise, with as many outlines."""
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -51,13 +53,20 @@ def largest(unpack: Callable[[], list[Points]], sheet: Sheet) -> Points:
     return parts[0] if parts else ()
 
 
-def coco_outlines(counts: str | Sequence[int], height: int, width: int) -> list[Points]:
+def _free(pixels: int) -> None:
+    """Let a mask of any number of pixels be unpacked."""
+
+
+def coco_outlines(
+    counts: str | Sequence[int], height: int, width: int, spend: Callable[[int], None] = _free
+) -> list[Points]:
     """Outlines of COCO's run lengths, the largest first, in pixels.
 
     Args:
         counts: lengths of runs in the order of columns, the first of zeros; or the same compressed to a text.
         height: of the picture in pixels.
         width: of the picture in pixels.
+        spend: is told how many pixels are going to be unpacked, and may refuse.
 
     Raises:
         Unreadable: the runs do not add up to the picture, or it is too large.
@@ -70,13 +79,20 @@ def coco_outlines(counts: str | Sequence[int], height: int, width: int) -> list[
         return []
     # Only the columns that hold something are unpacked: large pictures of small things are usual.
     first, last = int(ends[filled[0] - 1]) // height, (int(ends[filled[-1]]) - 1) // height
+    spend((last - first + 1) * height)
     flat = np.zeros((last - first + 1) * height, np.uint8)
     for i in filled:
         flat[ends[i - 1] - first * height : ends[i] - first * height] = 1
     return outlines(np.ascontiguousarray(flat.reshape(-1, height).T), (first, 0))
 
 
-def row_outlines(counts: Sequence[int], height: int, width: int, corner: tuple[float, float]) -> list[Points]:
+def row_outlines(
+    counts: Sequence[int],
+    height: int,
+    width: int,
+    corner: tuple[float, float],
+    spend: Callable[[int], None] = _free,
+) -> list[Points]:
     """Outlines of run lengths in the order of rows, the first of zeros, whose picture's upper left pixel is `corner`.
 
     Raises:
@@ -84,12 +100,15 @@ def row_outlines(counts: Sequence[int], height: int, width: int, corner: tuple[f
     """
     runs = np.asarray(_whole(counts), np.int64)
     _require(height, width, runs)
+    spend(height * width)
     bits = np.zeros(len(runs), np.uint8)
     bits[1::2] = 1
     return outlines(np.repeat(bits, runs).reshape(height, width), corner)
 
 
-def label_studio_outlines(packed: Sequence[int], height: int, width: int) -> list[Points]:
+def label_studio_outlines(
+    packed: Sequence[int], height: int, width: int, spend: Callable[[int], None] = _free
+) -> list[Points]:
     """Outlines of Label Studio's brush: packed values of red, green, blue and opacity by rows; opacity is the mask.
 
     Raises:
@@ -98,16 +117,20 @@ def label_studio_outlines(packed: Sequence[int], height: int, width: int) -> lis
     _require(height, width, None)
     if not all(isinstance(one, int) and 0 <= one <= 255 for one in packed):
         raise Unreadable("no bytes")
+    spend(height * width * _CHANNELS)
     values = _unpacked(bytes(packed), height * width * _CHANNELS)
     return outlines((values[_CHANNELS - 1 :: _CHANNELS] > 0).astype(np.uint8).reshape(height, width), (0, 0))
 
 
-def png_outlines(text: str, corner: tuple[float, float], packed: bool = False) -> list[Points]:
+def png_outlines(
+    text: str, corner: tuple[float, float], spend: Callable[[int], None] = _free, *, packed: bool = False
+) -> list[Points]:
     """Outlines of what a PNG picture in base64 shows (opaque, or not black), from its upper left pixel `corner` on.
 
     Args:
         text: the picture.
         corner: its place in pixels.
+        spend: as of `coco_outlines`.
         packed: whether it is compressed once more, as Supervisely's is.
 
     Raises:
@@ -123,6 +146,7 @@ def png_outlines(text: str, corner: tuple[float, float], packed: bool = False) -
         raise Unreadable("no PNG")
     width, height = struct.unpack(">II", data[16:24])
     _require(height, width, None)
+    spend(height * width)
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     if picture is None:
         raise Unreadable("a damaged picture")
@@ -135,7 +159,12 @@ def outlines(mask: NDArray[np.uint8], corner: tuple[float, float]) -> list[Point
 
     They run along the outer edges of the border pixels' centres: half a pixel is added, since positions here have
     the centre of the first pixel at 0.5.
+
+    Raises:
+        Unreadable: the mask has more edges than things have.
     """
+    if np.count_nonzero(mask[:, 1:] != mask[:, :-1]) > MAX_EDGES:
+        raise Unreadable("a mask of noise")
     found, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     ordered = sorted(found, key=cv2.contourArea, reverse=True)
     x0, y0 = corner

@@ -96,7 +96,7 @@ def unpacked(value: dict[str, Any], where: str, sheet: Sheet) -> Points:
     height, width = (whole(one, f"{where}.size") for one in numbers(value.get("size"), f"{where}.size", 2))
     counts = value.get("counts")
     runs = counts if isinstance(counts, str) else as_list(counts, f"{where}.counts")
-    return largest(lambda: coco_outlines(runs, height, width), sheet)
+    return largest(lambda: coco_outlines(runs, height, width, sheet.spend), sheet)
 
 
 def _area(corners: Points) -> float:

@@ -127,7 +127,7 @@ def _polygon(shape: Element, where: str) -> Points:
 def _mask(shape: Element, where: str, sheet: Sheet) -> Points:
     left, top, width, height = (whole(shape.get(m), f"{where}: {m}") for m in ("left", "top", "width", "height"))
     counts = [whole(one, f"{where}: rle") for one in (shape.get("rle") or "").split(",")]
-    return largest(lambda: row_outlines(counts, height, width, (left, top)), sheet)
+    return largest(lambda: row_outlines(counts, height, width, (left, top), sheet.spend), sheet)
 
 
 def _with_turn(box: Box, outline: Points | None, rotation: float) -> tuple[Box | None, Points | None]:
@@ -224,4 +224,4 @@ def _json_mask(flat: list[float], where: str, sheet: Sheet) -> Points:
     if len(flat) < 5:
         raise invalid(f"{where}.points", "holds no runs and corners of a mask")
     *runs, left, top, right, bottom = (whole(one, f"{where}.points") for one in flat)
-    return largest(lambda: row_outlines(runs, bottom - top + 1, right - left + 1, (left, top)), sheet)
+    return largest(lambda: row_outlines(runs, bottom - top + 1, right - left + 1, (left, top), sheet.spend), sheet)

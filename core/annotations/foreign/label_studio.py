@@ -45,6 +45,8 @@ _BASES = {
     "timeline": "timeline",
 }
 _LABELS = re.compile(r"(.*)labels$")
+_MAX_SOURCE = 4096
+"""Longest address of a picture or video."""
 _PICTURE = re.compile(r"\.(jpe?g|png|bmp|tiff?|webp|gif)(\?.*)?$", re.IGNORECASE)
 
 
@@ -102,7 +104,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
 
 def _source(data: dict[str, Any]) -> str:
     """The file of a task: of several members the first that names a picture or a video."""
-    texts = [one for one in data.values() if isinstance(one, str)]
+    texts = [one for one in data.values() if isinstance(one, str) and len(one) <= _MAX_SOURCE]
     named = [one for one in texts if _PICTURE.search(one) or "/" in one]
     return next(iter([*named, *texts]), "")
 
@@ -222,5 +224,5 @@ def _geometry(
 def _brush(value: dict[str, Any], size: Size | None, where: str, sheet: Sheet) -> Points:
     packed = as_list(value.get("rle"), f"{where}.rle")
     width, height = size or (0, 0)
-    corners = largest(lambda: label_studio_outlines(packed, int(height), int(width)), sheet)
+    corners = largest(lambda: label_studio_outlines(packed, int(height), int(width), sheet.spend), sheet)
     return tuple((x * 100 / width, y * 100 / height) for x, y in corners)

@@ -47,7 +47,7 @@ def _shape(one: dict[str, Any], where: str, sheet: Sheet) -> Shape | None:
     outline: Points | None = corners if kind == "polygon" else None
     if kind == "mask" and corners:
         packed, corner = text(one.get("mask"), f"{where}.mask"), corners[0]
-        outline = largest(lambda: png_outlines(packed, corner), sheet) or None
+        outline = largest(lambda: png_outlines(packed, corner, sheet.spend), sheet) or None
     return Shape(
         text(one.get("label"), f"{where}.label"),
         box,

@@ -23,6 +23,8 @@ PERCENT: Size = (100.0, 100.0)
 """Unit of coordinates in percent of the picture."""
 MAX_SHAPES = 500_000
 """Shapes of a file, at most: as many as the largest file of our own form can hold. Tracks unfold into many."""
+MAX_PIXELS = 1 << 34
+"""Pixels of all masks of a file that are unpacked, at most: half a minute's work, ten thousand large masks."""
 MAX_NUMBER = 10**9
 """Largest frame number. No video has as many frames; longer numbers in names are times of day or identifiers."""
 
@@ -43,6 +45,7 @@ ANY_DROPS: Mapping[str, str] = {
 _SUFFIXES = re.compile(r"(\.rf\.[0-9A-Za-z]+)?(\.(jpe?g|png|bmp|tiff?|webp|json|xml|txt))*$", re.IGNORECASE)
 _MANGLED = re.compile(r"_(jpe?g|png|bmp|tiff?|webp)$", re.IGNORECASE)
 _NUMBER = re.compile(r"[0-9]+")
+_MAX_NAME = 1024
 _HEAD = re.compile(r"(?=( (?:of|that|without|outside|in) .*)?$)")
 
 
@@ -88,6 +91,7 @@ class Sheet:
         """Sentences on what was read in an unusual way."""
         self._drops = {**ANY_DROPS, **drops}
         self._left = MAX_SHAPES
+        self._pixels_left = MAX_PIXELS
 
     def drop(self, kind: str, count: int = 1) -> None:
         """Count what is not read; `kind` is one of the format's table."""
@@ -95,6 +99,20 @@ class Sheet:
             raise KeyError(kind)
         if count:
             self.dropped[kind] += count
+
+    def spend(self, pixels: int) -> None:
+        """Count the pixels of a mask that is going to be unpacked.
+
+        Raises:
+            BadInput: `annotations_too_large`; a few bytes stand for any number of pixels.
+        """
+        self._pixels_left -= pixels
+        if self._pixels_left < 0:
+            raise BadInput(
+                f"the masks of the annotations have more than {MAX_PIXELS / 1e9:.0f} thousand million pixels",
+                code="annotations_too_large",
+                where="annotations",
+            )
 
     def note(self, text: str) -> None:
         """Keep a sentence on how the file was read, once."""
@@ -181,9 +199,9 @@ def number_in_name(name: str) -> str:
             code="annotations_frame_unknown",
             where="annotations",
         )
-    stem = _MANGLED.sub("", _SUFFIXES.sub("", name.replace("\\", "/").rpartition("/")[2]))
+    stem = _MANGLED.sub("", _SUFFIXES.sub("", name[:_MAX_NAME].replace("\\", "/").rpartition("/")[2]))
     numbers = _NUMBER.findall(stem)
-    if not numbers or len(numbers[-1]) > len(str(MAX_NUMBER)) or int(numbers[-1]) > MAX_NUMBER:
+    if len(name) > _MAX_NAME or not numbers or len(numbers[-1]) > len(str(MAX_NUMBER)) or int(numbers[-1]) > MAX_NUMBER:
         raise BadInput(
             f"annotations: the picture {shown(name)} has no frame number in its name; name pictures by the frame of "
             "the video that they show, such as frame_000012.png",
@@ -194,5 +212,11 @@ def number_in_name(name: str) -> str:
 
 
 def seconds_key(seconds: float) -> str:
-    """The key of a time, with a decimal point and at least three decimals, so that it is no frame number."""
+    """The key of a time, with a decimal point and at least three decimals, so that it is no frame number.
+
+    Raises:
+        BadInput: it is negative or longer than any video.
+    """
+    if not 0 <= seconds <= MAX_NUMBER:
+        raise BadInput(f"annotations: {seconds:g} s is no time of a video", code="bad_time", where="annotations")
     return max(f"{seconds:.3f}", repr(round(seconds, 9)), key=len) if seconds >= 1e-4 else f"{seconds:.6f}"

@@ -85,4 +85,4 @@ def _shape(figure: dict[str, Any], label: str, track: int | None, where: str, sh
 def _bitmap(bitmap: dict[str, Any], where: str, sheet: Sheet) -> Points:
     x, y = numbers(bitmap.get("origin"), f"{where}.bitmap.origin", 2)
     data = text(bitmap.get("data"), f"{where}.bitmap.data")
-    return largest(lambda: png_outlines(data, (x, y), packed=True), sheet)
+    return largest(lambda: png_outlines(data, (x, y), sheet.spend, packed=True), sheet)

@@ -21,7 +21,8 @@ from core.errors import BadInput
 DROPS = {"keypoints": "set of keypoints"}
 _MAX_YAML = 1 << 18
 _MAX_CLASS = 100_000
-_ROW = re.compile(r"[0-9]+(\s+[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?){4,}", re.IGNORECASE)
+_CLASS = re.compile(r"[0-9]{1,6}")
+_ROW = re.compile(r"[0-9]+(\s+[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)(e[-+]?[0-9]+)?){4,}", re.IGNORECASE)
 _PICTURE = re.compile(r"(.*)\.(jpe?g|png|bmp|tiff?|webp)", re.IGNORECASE)
 _NAMES = ("classes.txt", "labels.txt", "obj.names")
 _LISTS = ("train", "val", "valid", "test")
@@ -146,15 +147,16 @@ def _yaml(content: str, name: str) -> dict[str, Any]:
     if len(content) > _MAX_YAML:
         raise BadInput(f"'{name}' is too long for a list of classes", code="annotations_too_large", where=name)
     try:
-        value = yaml.safe_load(content)
+        # All values as texts: a class may be called "no", and nothing is made that a text could expand to.
+        value = yaml.load(content, Loader=yaml.BaseLoader)
     except (yaml.YAMLError, RecursionError, ValueError):
         raise BadInput(f"'{name}' is not valid YAML", code="annotations_malformed", where=name) from None
     return value if isinstance(value, dict) else {}
 
 
 def _names_of(value: Any, where: str) -> dict[int, str]:
-    if isinstance(value, list):
-        return {i: str(one) for i, one in enumerate(value)}
-    if isinstance(value, dict) and all(isinstance(key, int) for key in value):
-        return {key: str(one) for key, one in value.items()}
+    if isinstance(value, list) and all(isinstance(one, str) for one in value):
+        return dict(enumerate(value))
+    if isinstance(value, dict) and all(_CLASS.fullmatch(key) and isinstance(one, str) for key, one in value.items()):
+        return {int(key): one for key, one in value.items()}
     raise invalid(f"{where}: names", f"must be a list of names, not {shown(value)}")

@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from core.annotations.foreign import coco
 from core.annotations.foreign.bitmaps import (
     MAX_MASK_PX,
     Unreadable,
@@ -23,7 +24,9 @@ from core.annotations.foreign.bitmaps import (
     png_outlines,
     row_outlines,
 )
+from core.annotations.foreign.sheet import MAX_PIXELS, Sheet
 from core.annotations.masks import rasterise
+from core.errors import BadInput
 from core.roi import Crop
 
 TOOLS = Path(__file__).parents[3] / "data" / "inputs" / "foreign" / "tools"
@@ -123,6 +126,22 @@ def test_a_picture_shows_its_mask_by_opacity_or_brightness(channels: int) -> Non
 def test_what_is_no_mask_of_its_picture_is_not_unpacked(counts: str | list[int], height: int, width: int) -> None:
     with pytest.raises(Unreadable):
         coco_outlines(counts, height, width)
+
+
+def test_noise_and_endless_masks_are_refused() -> None:
+    noise = np.indices((1200, 2000)).sum(axis=0).astype(np.uint8) % 2
+    with pytest.raises(Unreadable, match="noise"):
+        outlines(noise, (0, 0))
+    side = 1 << 12
+    full = {"size": [side, side], "counts": [0, side * side]}
+    image = {"id": 1, "file_name": "1.png", "width": side, "height": side}
+    one = {"image_id": 1, "category_id": 1, "segmentation": full}
+    sheet = Sheet(coco.DROPS)
+    sheet.spend(MAX_PIXELS - side * side)
+    document = {"images": [image], "annotations": [one], "categories": [{"id": 1, "name": "dent"}]}
+    coco.read(document, "", sheet)
+    with pytest.raises(BadInput, match="17 thousand million pixels"):
+        coco.read(document, "", sheet)
 
 
 def test_a_picture_is_measured_before_it_is_unpacked() -> None:

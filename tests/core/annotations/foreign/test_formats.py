@@ -125,6 +125,35 @@ def test_coco_tells_frames_tracks_and_masks() -> None:
     )
 
 
+def test_files_of_an_archive_that_say_the_same_are_read_once() -> None:
+    coco = json.loads((FOREIGN / "coco.json").read_text())
+    files = {"annotations/instances_default.json": coco, "annotations/keypoints_default.json": coco}
+    annotations = read(zipped(files))
+    assert (annotations.format, len(annotations.detections)) == ("coco", 1)
+
+
+def test_long_texts_take_no_long_time() -> None:
+    coco = json.loads((FOREIGN / "coco.json").read_text())
+    coco["images"][0]["file_name"] = ".jpg" * 200_000 + "x"
+    with pytest.raises(BadInput, match="has no frame number in its name"):
+        read(coco)
+    labelled = {"data": {"image": ".jpg?" * 200_000 + "\n"}, "annotations": [{"result": []}]}
+    assert read([labelled], FRAME).entries == ()
+    with pytest.raises(BadInput, match="text of another kind"):
+        read("1" * 1_000_000 + "x 1 1 1 1")
+    files = {"frame_1.txt": "0 " + "1" * 500_000 + "x", "data.yaml": "names: &a [b]\nx: [*a, *a]"}
+    with pytest.raises(BadInput, match="holds no annotations"):
+        read(zipped(files))
+
+
+def test_names_of_classes_are_texts_whatever_they_look_like() -> None:
+    files = {"data.yaml": "names: [no, 1.10, 2020-01-01]", "frame_1.txt": "0 0.5 0.5 0.1 0.1\n1 0.5 0.5 0.2 0.2"}
+    assert [d.label for d in read(zipped(files), None).detections] == ["no", "1.10"]
+    for wrong in ("names: [[a]]", "names: {x: a}", "names: 3"):
+        with pytest.raises(BadInput, match="must be a list of names"):
+            read(zipped({**files, "data.yaml": wrong}), None)
+
+
 def test_coco_of_several_videos_is_refused_by_their_names() -> None:
     images = [{"id": i, "video_id": i, "frame_id": 0, "file_name": f"{i}.jpg", "width": 6, "height": 4} for i in (1, 2)]
     videos = [{"id": 1, "name": "a.mp4"}, {"id": 2, "name": "b.mp4"}]

@@ -39,6 +39,7 @@ FLAG_CODES: Mapping[str, str] = {
     "recording_joined": "the stamps of the video start again: it was joined from recordings, and the times go on",
     "video_stream_chosen": "the file holds several video streams; the one named was read",
     "annotations_outside_video": "some time keys of the annotations lie outside the video; they have no frame",
+    "annotations_partly_read": "the file of annotations holds shapes of kinds that are not read; they are left out",
     "annotation_times_inexact": "some time keys are no exact time of a frame; the nearest or the one shown was taken",
     "annotation_times_ambiguous": "the time keys fit several readings that mean other frames; the first was taken",
     "still_pixels_masked": "parts of the picture never move (burned-in text, dirt on the lens) and give no keypoints",

@@ -53,6 +53,8 @@ class Annotations:
     entries: tuple[Entry, ...] = ()
     warnings: tuple[str, ...] = ()
     """Oddities that were tolerated, each naming its place."""
+    left_out: tuple[str, ...] = ()
+    """What the file holds and nobody reads, one sentence for each kind; `warnings` has these as well."""
     format: str = "bladeatlas"
     """Name of the format that the file was of."""
     n_frames: int | None = None

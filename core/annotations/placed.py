@@ -85,6 +85,8 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
     if outside:
         where = f"first key {shown(outside[0])}"
         flags = (*flags, Flag("annotations_outside_video", Severity.WARNING, float(len(outside)), 0.0, where))
+    if annotations.left_out:
+        flags = (*flags, Flag("annotations_partly_read", Severity.INFO, where="; ".join(annotations.left_out)))
     return PlacedAnnotations(
         detections=tuple(
             PlacedDetection(

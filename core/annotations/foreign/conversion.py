@@ -32,9 +32,10 @@ def annotations_of(sheet: Sheet, frame: Size | None) -> Annotations:
     """
     entries: list[Entry] = []
     next_id = 0
-    for picture in sorted(sheet.pictures.values(), key=lambda one: Fraction(one.key)):
+    timed = [(_time(picture.key), picture) for picture in sheet.pictures.values()]
+    for time, picture in sorted(timed, key=lambda one: one[0]):
         unit = _unit(picture, frame)
-        time = Fraction(picture.key)
+        where = f"picture {shown(picture.name)}" if picture.shapes else ""
         detections: list[Detection] = []
         masks: list[Mask] = []
         for shape in picture.shapes:
@@ -42,7 +43,6 @@ def annotations_of(sheet: Sheet, frame: Size | None) -> Annotations:
             if placed is None:
                 continue
             box, polygon = placed
-            where = f"picture {shown(picture.name)}"
             label = as_label(shape.label, f"{where}: a label")
             if label.casefold() == BLADE_LABEL and polygon is not None:
                 masks.append(Mask(label, polygon))
@@ -52,7 +52,17 @@ def annotations_of(sheet: Sheet, frame: Size | None) -> Annotations:
             detections.append(Detection(next_id, picture.key, time, label, score, box, polygon, track))
             next_id += 1
         entries.append(Entry(picture.key, time, tuple(detections), tuple(masks)))
-    return Annotations(tuple(entries), tuple(sheet.warnings), clocks=sheet.clocks, n_frames=sheet.counted_frames)
+    return Annotations(
+        tuple(entries),
+        (*sheet.left_out, *sheet.notes),
+        tuple(sheet.left_out),
+        clocks=sheet.clocks,
+        n_frames=sheet.counted_frames,
+    )
+
+
+def _time(key: str) -> Fraction:
+    return Fraction(int(key)) if key.isdecimal() else Fraction(key)
 
 
 def _unit(picture: Picture, frame: Size | None) -> Size:

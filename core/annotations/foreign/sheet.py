@@ -153,10 +153,9 @@ class Sheet:
             picture.shapes[shape] = None
 
     @property
-    def warnings(self) -> list[str]:
-        """One sentence for each kind of thing that was not read, then the notes."""
-        said = [f"{counted(self._drops[kind], count)} not read" for kind, count in self.dropped.items()]
-        return said + self.notes
+    def left_out(self) -> list[str]:
+        """One sentence for each kind of thing that was not read."""
+        return [f"{counted(self._drops[kind], count)} not read" for kind, count in self.dropped.items()]
 
 
 def counted(what: str, count: int) -> str:

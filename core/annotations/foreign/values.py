@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -110,4 +111,4 @@ def track_of(value: Any) -> str | int | None:
         return None
     if isinstance(value, str):
         return value.strip() or None
-    return int(value) if value == int(value) and value >= 0 else None
+    return int(value) if math.isfinite(value) and value == int(value) and value >= 0 else None

@@ -14,7 +14,7 @@ from core.annotations.load import annotations_from, load_annotations
 from core.errors import BadInput
 from core.intake import answer, check_input
 from core.settings import make_settings
-from tests.core.making_zips import zipped
+from tests.core.making_annotations import zipped
 
 ROOT = Path(__file__).parents[4]
 FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"

@@ -15,7 +15,6 @@ from core.errors import BadInput
 PAGE = "docs/annotations.md"
 _CSV_NUMBERS = re.compile(r"\s*-?[0-9.]+(\s*,\s*-?[0-9.]+){5,9}\s*,?\s*")
 _PARAMETERS = {"preset", "options", "label", "external_id"}
-_PLACED = {"source_index", "box", "key"}
 _VIDEO_STARTS = (b"\x1aE\xdf\xa3", b"OggS", b"FLV", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3", b"0&\xb2u", b".RMF")
 
 
@@ -124,7 +123,7 @@ _KINDS: tuple[tuple[Callable[[Any], bool], str, str], ...] = (
     ),
     (_all_have("image", "annotations"), "a file of CreateML", "export COCO instead"),
     (
-        _all_have(*_PLACED),
+        _all_have("key", "time_s", "label"),
         "the table detections.json of a result of this program",
         "name the annotations that the result was made from",
     ),

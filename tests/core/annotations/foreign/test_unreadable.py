@@ -13,6 +13,7 @@ from core.annotations.foreign.xml_tree import MAX_DEPTH, parse_xml
 from core.annotations.load import annotations_from, load_annotations
 from core.errors import BadInput
 from core.intake import answer, check_input
+from core.mapping.rows import DETECTION_COLUMNS
 from core.settings import make_settings
 from tests.core.making_annotations import zipped
 
@@ -21,7 +22,8 @@ FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"
 SAMPLE = ROOT / "samples" / "turbine.json"
 VIDEO = ROOT / "samples" / "turbine.mp4"
 CREATE_ML = FOREIGN / "tools" / "supervision_createml.json"
-PLACED = [{"id": 0, "key": "0.0", "box": [0, 0, 1, 1], "source_index": 0}]
+PUBLISHED = [dict.fromkeys(DETECTION_COLUMNS)]
+PLACED = [{"id": 0, "key": "0.0", "time_s": 0.0, "label": "dent", "box": [0, 0, 1, 1], "source_index": 0}]
 
 
 @pytest.mark.parametrize(
@@ -37,6 +39,7 @@ PLACED = [{"id": 0, "key": "0.0", "box": [0, 0, 1, 1], "source_index": 0}]
         (gzip.compress(SAMPLE.read_bytes()[:2000]), "a file packed by gzip", "unpack it"),
         (b"7z\xbc\xaf\x27\x1c" + bytes(40), "an archive of a kind that is not read", "zip"),
         (b"\x80\x04\x95\0\0\0", "a binary file", ""),
+        (json.dumps(PUBLISHED).encode(), "the table detections.json of a result", "made from"),
         (json.dumps(PLACED).encode(), "the table detections.json of a result", "made from"),
         (b'{"preset": "draft", "options": {}}', "a file of parameters", "--parameters"),
         (b'{"videos": [], "annotations": []}', "a file of YouTube-VIS", "COCO"),

@@ -95,7 +95,11 @@ def _archive(data: bytes, frame: Size | None, form: str) -> Annotations:
                 texts[name] = text
         else:
             texts[name] = text
-    known = [(name, one) for name, one in documents if _candidates(one, form) or (is_own(one) and form in (AUTO, OWN))]
+    known = [
+        (name, one)
+        for name, one in documents
+        if _candidates(one, form) or (form in (AUTO, OWN) and is_own(one) and one)  # tools leave empty objects about
+    ]
     if known:
         return _of_documents(known, frame, form, [one for _, one in documents if not isinstance(one, Element)])
     rows = [text for name, text in texts.items() if name.lower().endswith(".txt") and yolo.is_label_text(text)]

@@ -138,7 +138,7 @@ def test_an_archive_has_limits(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_an_archive_may_hold_our_own_form_but_not_two_kinds() -> None:
     own = SAMPLE.read_text()
-    assert len(annotations_from(zipped({"turbine.json": own})).detections) == 90
+    assert len(annotations_from(zipped({"turbine.json": own, "key_id_map.json": "{}"})).detections) == 90
     with pytest.raises(BadInput, match="several files of annotations"):
         annotations_from(zipped({"a.json": own, "b.json": (FOREIGN / "coco.json").read_text()}))
     with pytest.raises(BadInput, match=r"a\.json: the annotations are not valid JSON"):

@@ -28,7 +28,7 @@ def called(capsys: pytest.CaptureFixture[str], *words: str | Path, expect: int =
     return captured.out if expect == 0 else captured.err
 
 
-def placed_of(path: Path) -> list[tuple[Any, ...]]:
+def placed_of(path: Path) -> list[Any]:
     """What matters of every detection, and the frames looked at."""
     table = probe_video(VIDEO)
     placed = place(load_annotations(path, (table.info.width, table.info.height)), table)
@@ -98,7 +98,12 @@ def test_a_folder_is_read_by_check_as_its_zip_is(tmp_path: Path, capsys: pytest.
 def test_the_format_can_be_forced(capsys: pytest.CaptureFixture[str]) -> None:
     assert "seems to be COCO" in called(capsys, "check", FOREIGN / "coco.json", VIDEO, "--format", "via", expect=2)
     assert "format: coco" in called(capsys, "check", FOREIGN / "coco.json", VIDEO, "--format", "coco")
-    for words in (["check", FOREIGN / "coco.json"], ["run", VIDEO, SAMPLE, "--out", "x"], ["submit", VIDEO, SAMPLE]):
+    commands: list[list[str | Path]] = [
+        ["check", FOREIGN / "coco.json"],
+        ["run", VIDEO, SAMPLE, "--out", "x"],
+        ["submit", VIDEO, SAMPLE],
+    ]
+    for words in commands:
         said = called(capsys, *words, "--format", "coca", expect=2)
         assert "input.annotation_format" in said
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -24,6 +25,18 @@ _END = b"PK\x05\x06"
 _END_64 = b"PK\x06\x07"
 _END_REACH = (1 << 16) + 64
 _HEAD = 512
+_DAMAGED = (
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    OSError,
+    IndexError,
+    ValueError,
+    NotImplementedError,
+    RuntimeError,
+)
+"""What the library raises for archives whose parts contradict each other; found by changing bytes of sound ones."""
 _PICTURES = (b"\xff\xd8\xff", b"\x89PNG", b"II*\0", b"MM\0*", b"RIFF", b"GIF8")
 
 
@@ -54,7 +67,7 @@ def files_of_zip(data: bytes) -> Iterator[tuple[str, bytes | None]]:
                 if left < 0:
                     raise _large(f"holds more than {MAX_BYTES / 1e6:.0f} MB of text")
                 yield member.filename, content
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, OSError, UnicodeDecodeError):
+    except _DAMAGED:
         raise BadInput(
             "the archive of the annotations is damaged, or packed in a way that is not read",
             code="annotations_archive",

@@ -6,6 +6,7 @@ import base64
 import json
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -91,7 +92,8 @@ def test_a_brush_of_label_studio_is_its_opacity() -> None:
     packed = task["annotations"][0]["result"][-1]["value"]["rle"]
     (outline,) = label_studio_outlines(packed, 720, 960)
     assert (min(outline), max(outline)) == ((240.5, 360.5), (359.5, 419.5))
-    for wrong in (packed[:-5], packed[:3], [*packed[:4], 0, *packed[5:]], ["a"]):
+    broken: list[list[Any]] = [packed[:-5], packed[:3], [*packed[:4], 0, *packed[5:]], ["a"]]
+    for wrong in broken:
         with pytest.raises(Unreadable):
             label_studio_outlines(wrong, 720, 960)
     with pytest.raises(Unreadable):

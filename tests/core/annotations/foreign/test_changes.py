@@ -77,6 +77,19 @@ def test_any_change_of_xml_is_read_or_refused(data: st.DataObject) -> None:
     read_or_refused(lambda: annotations_from(text.replace(old, new, 1).encode(), FRAME))
 
 
+ARCHIVES = [path.read_bytes() for path in sorted(FOREIGN.rglob("*.zip"))]
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from(ARCHIVES), st.lists(st.tuples(st.integers(0, 1 << 16), st.binary(max_size=3)), max_size=4))
+def test_any_change_of_an_archive_is_read_or_refused(archive: bytes, changes: list[tuple[int, bytes]]) -> None:
+    damaged = bytearray(archive)
+    for place, new in changes:
+        at = len(damaged) - 1 - place % len(damaged)  # drawn small numbers are near the table of contents
+        damaged[at : at + 2] = new
+    read_or_refused(lambda: annotations_from(bytes(damaged), FRAME))
+
+
 def read_or_refused(attempt: Callable[[], Annotations]) -> None:
     try:
         annotations, refusal = attempt(), None

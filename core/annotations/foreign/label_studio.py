@@ -96,8 +96,8 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
                     where=where,
                 )
             _video(results, where, sheet)
-        elif _is_task(task) and not (task.get("annotations") or task.get("predictions")):
-            continue  # nobody has looked at it yet
+        elif _is_task(task) and not _work(task, where)[0]:
+            continue  # nobody has looked at it yet, or whoever did has skipped it
         else:
             _picture(results, source, where, sheet)
 
@@ -121,15 +121,20 @@ def _results(task: dict[str, Any], where: str, sheet: Sheet) -> Iterator[tuple[d
         for value in _short(task):
             yield {"type": _label_member(value) if "sequence" not in value else "videorectangle", "value": value}, None
         return
-    done = objects(task.get("annotations"), f"{where}.annotations")
-    done = [one for one in done if not one.get("was_cancelled")]
-    chosen = done or objects(task.get("predictions"), f"{where}.predictions")
+    chosen, done = _work(task, where)
     if len(chosen) > 1:
         sheet.drop("annotator", len(chosen) - 1)
     for one in chosen[:1]:
         for region in objects(one.get("result"), f"{where}.result"):
             score = region.get("score", None if done else one.get("score"))
             yield region, None if score is None else number(score, f"{where}.score")
+
+
+def _work(task: dict[str, Any], where: str) -> tuple[list[dict[str, Any]], bool]:
+    """Annotations that were not cancelled, and True; without any the predictions, and False."""
+    annotations = objects(task.get("annotations"), f"{where}.annotations")
+    done = [one for one in annotations if not one.get("was_cancelled")]
+    return (done, True) if done else (objects(task.get("predictions"), f"{where}.predictions"), False)
 
 
 def _kind(region: dict[str, Any]) -> str:

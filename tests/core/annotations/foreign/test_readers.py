@@ -231,3 +231,94 @@ def test_roboflow_takes_frame_offsets_before_times() -> None:
     document = {"frame_offset": [0, 18], "time_offset": [0.0, 1.5], "model": [answer, answer]}
     annotations = read(document)
     assert ([e.key for e in annotations.entries], annotations.clocks) == (["0", "18"], ("index",))
+
+
+def test_ultralytics_results_of_frames_in_their_order() -> None:
+    one = {"name": "dent", "class": 0, "confidence": 0.5, "track_id": 4}
+    shares = {**one, "box": {"x1": 0.1, "y1": 0.2, "x2": 0.3, "y2": 0.4}}
+    segment = {"segments": {"x": [96, 192, 192], "y": [72, 72, 144]}, "box": {"x1": 96, "y1": 72, "x2": 192, "y2": 144}}
+    turned = {"box": {"x1": 96, "y1": 72, "x2": 192, "y2": 72, "x3": 192, "y3": 144, "x4": 96, "y4": 144}}
+    whole = {"name": "blade", "class": 1, "confidence": 0.9}
+    annotations = read([[], [shares], [{**one, **segment, "keypoints": {"x": [1]}}, {**one, **turned}, whole]])
+    assert [len(entry.detections) for entry in annotations.entries] == [0, 1, 2]
+    assert annotations.clocks == ("index",)
+    assert annotations.detections[0].box == pytest.approx((0.1, 0.2, 0.3, 0.4))
+    for detection, corners in zip(annotations.detections[1:], (3, 4), strict=True):
+        assert detection.box == pytest.approx((0.1, 0.1, 0.2, 0.2))
+        assert (len(detection.polygon or ()), detection.score, detection.track_id) == (corners, 0.5, 4)
+    assert annotations.warnings == ("1 set of keypoints is not read", "1 class of a whole picture is not read")
+
+
+def test_via_2_takes_polygons_and_finds_the_label() -> None:
+    polygon = {"name": "polygon", "all_points_x": [0, 480, 480], "all_points_y": [0, 0, 360]}
+    regions = [
+        {"shape_attributes": polygon, "region_attributes": {"remark": "old", "Label": {"nick": False, "dent": True}}},
+        {"shape_attributes": {"name": "circle", "cx": 1, "cy": 1, "r": 1}, "region_attributes": {}},
+    ]
+    export = {"a": {"filename": "f1.png", "size": 1, "regions": regions}, "b": {"filename": "f2.png", "regions": {}}}
+    annotations = read(export)
+    (detection,) = annotations.detections
+    assert (detection.label, detection.polygon) == ("dent", ((0, 0), (0.5, 0), (0.5, 0.5)))
+    assert [entry.key for entry in annotations.entries] == ["1", "2"]
+    assert annotations.warnings == ("1 circle is not read",)
+
+
+def test_via_3_takes_chosen_options_and_pictures() -> None:
+    project = {
+        "project": {},
+        "attribute": {"1": {"aname": "kind", "options": {"0": "nick", "1": "dent"}}},
+        "file": {"7": {"fname": "f_12.png", "type": 2}},
+        "view": {"v": {"fid_list": ["7"]}},
+        "metadata": {
+            "a": {"vid": "v", "z": [], "xy": [7, 0, 0, 480, 0, 480, 360], "av": {"1": "1"}},
+            "b": {"vid": "v", "z": [], "xy": [3, 1, 1, 1], "av": {"1": "1"}},
+        },
+    }
+    annotations = read(project)
+    (detection,) = annotations.detections
+    assert (detection.key, detection.label, detection.box) == ("12", "dent", (0, 0, 0.5, 0.5))
+    assert annotations.warnings == ("1 circle is not read",)
+
+
+def test_datumaro_counts_what_is_no_region() -> None:
+    kinds = ["label", "polyline", "points", "caption", "cuboid_3d", "ellipse", "new"]
+    item = {"id": "frame_4", "annotations": [{"type": kind} for kind in kinds], "image": {"size": [72, 96]}}
+    document = {"categories": {"label": {"labels": [{"name": "dent"}]}}, "items": [item]}
+    annotations = read(document, (96, 72))
+    assert (len(annotations.warnings), annotations.entries[0].detections) == (len(kinds), ())
+    wrong = {**document, "items": [{**item, "annotations": [{"type": "bbox", "bbox": [0, 0, 9, 9], "label_id": 1}]}]}
+    with pytest.raises(BadInput, match="label_id is 1, which no category has"):
+        read(wrong, (96, 72))
+
+
+BOX = {"framesCount": 9, "labels": ["a"], "sequence": [{"frame": 1, "x": 1, "y": 1, "width": 1, "height": 1}]}
+REGION = {"type": "videorectangle", "value": BOX}
+TRACK = '<track id="{0}" label="a" task_id="{0}"><box frame="0" outside="0" xtl="0" ytl="0" xbr="9" ybr="9"/></track>'
+SPOT = {"z": [0.5], "xy": [2, 1, 1, 9, 9], "av": {"1": "a"}}
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        [{"data": {"video": f"/{name}.mp4"}, "annotations": [{"result": [REGION]}]} for name in "ab"],
+        f"<annotations><version>1.1</version>{TRACK.format(1)}{TRACK.format(2)}</annotations>",
+        {
+            "project": {},
+            "file": {name: {"fname": f"{name}.mp4", "type": 4} for name in "ab"},
+            "metadata": {name: {**SPOT, "vid": name} for name in "ab"},
+        },
+    ],
+)
+def test_a_file_of_several_videos_is_refused(value: Any) -> None:
+    with pytest.raises(BadInput) as caught:
+        read(value)
+    assert caught.value.code == "annotations_several_videos"
+
+
+def test_what_nobody_has_looked_at_yet_is_no_empty_picture() -> None:
+    tasks = [
+        {"data": {"image": "/f_1.png"}, "annotations": []},
+        {"data": {"image": "/f_2.png"}, "annotations": [{"result": []}]},
+        {"data": {"image": "/f_3.png"}, "annotations": [{"result": [], "was_cancelled": True}], "predictions": []},
+    ]
+    assert [entry.key for entry in read(tasks).entries] == ["2"]

@@ -53,6 +53,7 @@ class Prober:
         question = {
             "video": str(video),
             "annotations": str(annotations) if annotations else None,
+            "annotation_format": settings.input.annotation_format,
             "video_stream": settings.input.video_stream,
             "fps": settings.input.fps,
             "roi": settings.roi.model_dump(mode="json"),

@@ -54,7 +54,7 @@ CREATE_BODY: dict[str, Any] = {
                     "additionalProperties": False,
                     "properties": {
                         "video": {**_BINARY, "description": "the video; its content decides, not its declared type"},
-                        "annotations": {**_BINARY, "description": "JSON; see docs/outputs.md for what becomes of it"},
+                        "annotations": {**_BINARY, "description": "any file of docs/annotations.md; told by content"},
                         "parameters": {"$ref": "#/components/schemas/Parameters"},
                     },
                 }
@@ -253,7 +253,9 @@ class CreateBody(BaseModel):
 
     video_upload: str = Field(description="id of the video's upload")
     annotations_upload: str | None = Field(None, description="id of the annotations' upload")
-    annotations: dict[str, Any] | None = Field(None, description="the annotations themselves, up to 8 MiB")
+    annotations: dict[str, Any] | list[Any] | None = Field(
+        None, description="the annotations themselves, in any JSON form that is read, up to 8 MiB"
+    )
     parameters: Parameters = Parameters()
 
 

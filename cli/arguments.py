@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from cli.annotation_file import add_format
 from cli.remote_arguments import add_remote_commands
 from cli.terminal import say
 from core.settings import PRESET_NAMES
@@ -71,8 +72,10 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
     check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
     _fps(check)
+    add_format(check)
     _set(check, "set one option of the input (repeatable), e.g. input.time_convention=index to try a reading")
     _json(check)
+    _convert(commands)
     _questions(commands)
     options = _add(commands, "options", "list every option: meaning, unit, default, range, source")
     _preset(options)
@@ -88,6 +91,16 @@ def _top() -> argparse.ArgumentParser:
         description="Borescope video and its annotations in, a 3D surface of the blades with every defect on it out.",
         epilog=_EXIT_CODES,
     )
+
+
+def _convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    convert = _add(commands, "convert", "write the annotations of another tool in our own form")
+    convert.add_argument("annotations", type=Path, metavar="ANNOTATIONS", help="file or folder of any format read")
+    convert.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="the video they are of: times get exact")
+    convert.add_argument("--out", type=Path, required=True, metavar="FILE", help="JSON to write")
+    add_format(convert)
+    _set(convert, "set one option of the input (repeatable)")
+    _json(convert)
 
 
 def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -113,7 +126,10 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "video", type=Path, metavar="VIDEO", help="file, folder or zip of pictures, pattern as f/%%04d.jpg"
     )
-    run.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON; see docs/annotations.md")
+    run.add_argument(
+        "annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="file or folder; see docs/annotations.md"
+    )
+    add_format(run)
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)
     _set(run, "set one option (repeatable); `bladeatlas options` lists them")

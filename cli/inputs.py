@@ -5,15 +5,19 @@ from __future__ import annotations
 import argparse
 import json
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
+from cli.annotation_file import annotation_file, with_format
 from cli.parameters import parse_assignment
 from cli.progress import duration
 from cli.terminal import say, say_json
-from core.annotations.parse import load_annotations
+from core.annotations.load import load_annotations
+from core.annotations.model import Annotations
 from core.annotations.placed import place
 from core.annotations.summary import AnnotationSummary, summarise
 from core.errors import BadInput
+from core.intake import in_what_order
 from core.settings import make_settings
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video
@@ -75,12 +79,10 @@ def _gaps(table: FrameTable) -> dict[str, float | bool]:
 
 def check(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
-    options = input_options(parsed.assignments, parsed.fps)
-    annotations = load_annotations(parsed.annotations)
-    placed, video = None, None
-    if parsed.video:
-        table = probe_video(parsed.video, allow_truncated=True, stream=options.video_stream, fps=options.fps)
-        placed, video = place(annotations, table, options.time_convention), table.info
+    options = input_options(with_format(parsed), parsed.fps)
+    annotations, table = read_with_video(parsed.annotations, parsed.video, options)
+    placed = None if table is None else place(annotations, table, options.time_convention)
+    video = None if table is None else table.info
     summary = summarise(annotations, placed)
     if parsed.json:
         found = {**summary.to_dict(), "video": None if video is None else video.to_dict()}
@@ -102,9 +104,23 @@ def input_options(assignments: list[str], fps: float | None = None) -> InputSett
     return make_settings("default", options).input
 
 
+def read_with_video(path: Path, video: Path | None, options: InputSettings) -> tuple[Annotations, FrameTable | None]:
+    """Annotations, held against the frames of the video when one is given."""
+    table = None
+    if video is not None:
+        try:
+            table = probe_video(video, allow_truncated=True, stream=options.video_stream, fps=options.fps)
+        except BadInput as error:
+            raise in_what_order(error, path) from None
+    frame = None if table is None else (table.info.width, table.info.height)
+    with annotation_file(path) as file:
+        return load_annotations(file, frame, options.annotation_format), table
+
+
 def lines(summary: AnnotationSummary) -> list[str]:
     """The summary in a few lines."""
     found = [
+        f"  format: {summary.format}",
         f"  labels: {_counts(summary.detections_by_label)}",
         f"  masks: {_counts(summary.masks_by_label)}",
         f"  detections with an outline: {summary.n_with_polygon}, with a track: {summary.n_with_track}",

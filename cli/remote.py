@@ -14,6 +14,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, DownloadColumn, Progress, TaskID, TextColumn, TransferSpeedColumn
 
 from cli import exits
+from cli.annotation_file import optional_annotation_file, with_format
 from cli.client import Client, InspectionInfo
 from cli.client.client import chosen
 from cli.client.transfers import no_progress
@@ -34,7 +35,8 @@ def submit(parsed: argparse.Namespace) -> int:
     with client_of(parsed) as client:
         with byte_bars() as bars:
             on_bytes = bars.show if bars is not None else no_progress
-            inspection = client.submit(parsed.video, parsed.annotations, parameters, on_bytes=on_bytes)
+            with optional_annotation_file(parsed.annotations) as annotations:
+                inspection = client.submit(parsed.video, annotations, parameters, on_bytes=on_bytes)
         if parsed.json:
             say_json(inspection.raw)
         else:
@@ -50,7 +52,7 @@ def submit(parsed: argparse.Namespace) -> int:
 def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
     """Parameter file first, then what the command line says over it; checked here before anything is sent."""
     base = read_parameters(parsed.parameters) if parsed.parameters else Parameters()
-    options = {**base.options, **dict(parse_assignment(text) for text in parsed.assignments)}
+    options = {**base.options, **dict(parse_assignment(text) for text in with_format(parsed))}
     wanted = Parameters(
         parsed.preset or base.preset, options, parsed.label or base.label, parsed.external_id or base.external_id
     )

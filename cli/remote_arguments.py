@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from cli.annotation_file import add_format
 from core.settings import PRESET_NAMES
 
 Commands = argparse._SubParsersAction  # argparse has no public name for it
@@ -32,7 +33,10 @@ def add_remote_commands(commands: Commands[argparse.ArgumentParser], exit_codes:
 
 def _submit(submit: argparse.ArgumentParser) -> None:
     submit.add_argument("video", type=Path, metavar="VIDEO")
-    submit.add_argument("annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="JSON")
+    submit.add_argument(
+        "annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="file or folder; see docs/annotations.md"
+    )
+    add_format(submit)
     submit.add_argument("--preset", metavar="|".join(PRESET_NAMES), help="where the values start")
     submit.add_argument(
         "--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help="set one option"

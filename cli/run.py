@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 from cli import exits, parameters, progress, report
+from cli.annotation_file import optional_annotation_file
 from cli.terminal import say
 from core.errors import BadInput
 from core.graph import STAGES
 from core.intake import check_input
+from core.settings import Settings
 from core.states import RunState
 from worker.events import Outcome
 from worker.local_run import Names, run_inspection
@@ -23,20 +26,10 @@ def command(parsed: argparse.Namespace) -> int:
         raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
     if parsed.from_stage is not None and parsed.from_stage not in STAGES:
         raise BadInput(f"unknown stage '{parsed.from_stage}'; known: {', '.join(STAGES)}", where="--from")
-    check_input(parsed.video, parsed.annotations, settings)
     display = progress.choose(parsed.json)
-    with display:
-        outcome = run_inspection(
-            parsed.video,
-            parsed.annotations,
-            parsed.out,
-            settings,
-            workers=parsed.workers,
-            on_event=display.show,
-            from_stage=parsed.from_stage,
-            force=parsed.force,
-            names=Names(wanted.label, wanted.external_id),
-        )
+    with optional_annotation_file(parsed.annotations) as annotations:
+        check_input(parsed.video, annotations, settings)
+        outcome = _run(parsed, annotations, wanted, settings, display)
     code = _code(outcome)
     if isinstance(display, progress.JsonDisplay):
         labels = {"label": wanted.label, "external_id": wanted.external_id}
@@ -48,6 +41,27 @@ def command(parsed: argparse.Namespace) -> int:
     elif outcome.error is not None:
         say(f"bladeatlas: {exits.one_line(outcome.error)}", error=True)
     return code
+
+
+def _run(
+    parsed: argparse.Namespace,
+    annotations: Path | None,
+    wanted: parameters.Parameters,
+    settings: Settings,
+    display: progress.Display,
+) -> Outcome:
+    with display:
+        return run_inspection(
+            parsed.video,
+            annotations,
+            parsed.out,
+            settings,
+            workers=parsed.workers,
+            on_event=display.show,
+            from_stage=parsed.from_stage,
+            force=parsed.force,
+            names=Names(wanted.label, wanted.external_id),
+        )
 
 
 def _code(outcome: Outcome) -> int:

@@ -43,6 +43,7 @@ FLAG_CODES: Mapping[str, str] = {
     "interlaced": "frames consist of two fields; they were deinterlaced (FFmpeg's bwdif), one picture per frame",
     "pixels_not_square": "the video's pixels are not square; its frames were resampled so that they are",
     "annotations_outside_video": "some time keys of the annotations lie outside the video; they have no frame",
+    "annotations_partly_read": "the file of annotations holds shapes of kinds that are not read; they are left out",
     "annotation_times_inexact": "some time keys are no exact time of a frame; the nearest or the one shown was taken",
     "annotation_times_ambiguous": "the time keys fit several readings that mean other frames; the first was taken",
     "still_pixels_masked": "parts of the picture never move (burned-in text, dirt on the lens) and give no keypoints",

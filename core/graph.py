@@ -65,7 +65,13 @@ STAGES: dict[str, StageSpec] = {
             reads_video=True,
             weight=0.2,
         ),
-        _spec("annotations", "input.time_convention", version=3, reads_annotations=True, weight=0.1),
+        _spec(
+            "annotations",
+            *_options("input", "time_convention", "annotation_format"),
+            version=4,
+            reads_annotations=True,
+            weight=0.1,
+        ),
         _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
         _spec("features", "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec(

@@ -18,7 +18,8 @@ from itertools import islice
 from pathlib import Path
 from typing import NotRequired, TypedDict
 
-from core.annotations.parse import load_annotations
+from core.annotations.foreign.unreadable import looks_like_video
+from core.annotations.load import load_annotations
 from core.errors import BadInput, BladeAtlasError
 from core.roi import crop_of
 from core.settings import Settings
@@ -47,6 +48,7 @@ class Question(TypedDict):
     annotations: NotRequired[str | None]
     video_stream: NotRequired[int | None]
     fps: NotRequired[float | None]
+    annotation_format: NotRequired[str]
     roi: dict[str, float]
     """Shares of the frame: x0, y0, x1, y1."""
     limits: NotRequired[LimitFields]
@@ -76,10 +78,38 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     The first two frames are decoded, the annotations are read in full. What only a full pass can find
     (damage further on, an interval outside the video) the stages say.
     """
-    check_video(video, settings.input.video_stream, fps=settings.input.fps)
+    found = _checked(video, annotations, settings.input.video_stream, PIXELS_ONLY, settings.input.fps)
     if annotations is not None:
-        load_annotations(annotations)
+        load_annotations(annotations, (found["width"], found["height"]), settings.input.annotation_format)
     check_roi(settings)
+
+
+def _checked(
+    video: Path, annotations: Path | None, stream: int | None, limits: VideoLimits, fps: float | None
+) -> VideoSize:
+    try:
+        return check_video(video, stream, limits, fps)
+    except BadInput as error:
+        raise in_what_order(error, annotations) from None
+
+
+def in_what_order(error: BadInput, annotations: Path | None) -> BadInput:
+    """The error of a video that is none; when the annotations are one, that they are in the wrong order."""
+    if error.code != "not_a_video" or annotations is None or not _is_video(annotations):
+        return error
+    return BadInput(
+        "the video and the annotations are in the wrong order: what should be the annotations is a video",
+        code="swapped_files",
+        where="video",
+    )
+
+
+def _is_video(path: Path) -> bool:
+    try:
+        with path.open("rb") as stream:
+            return looks_like_video(stream.read(512))
+    except OSError:
+        return False
 
 
 def check_video(
@@ -136,22 +166,20 @@ def answer(question: Question) -> Answer:
     """Check what a question names.
 
     Args:
-        question: ``video`` and optionally ``annotations`` (paths), ``video_stream``, ``fps``, ``roi`` (shares),
-            ``limits`` (`VideoLimits`).
+        question: ``video`` and optionally ``annotations`` (paths), ``annotation_format``, ``video_stream``, ``fps``,
+            ``roi`` (shares), ``limits`` (`VideoLimits`).
 
     Returns:
         ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
     """
     try:
-        found = check_video(
-            Path(question["video"]),
-            question.get("video_stream"),
-            VideoLimits(**question.get("limits", {})),
-            question.get("fps"),
-        )
+        given = question.get("annotations")
+        path = None if given is None else Path(given)
+        limits = VideoLimits(**question.get("limits", {}))
+        found = _checked(Path(question["video"]), path, question.get("video_stream"), limits, question.get("fps"))
         crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
-        path = question.get("annotations")
-        annotations = load_annotations(Path(path) if path else None)
+        frame = (found["width"], found["height"])
+        annotations = load_annotations(path, frame, question.get("annotation_format", "auto"))
     except BladeAtlasError as error:
         return {"error": error.to_dict()}
     except MemoryError:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from api.auth import caller
@@ -12,10 +13,13 @@ from api.problems import responses
 from api.schemas import Parameters
 from api.state import state_of
 from api.submit import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
+from core.annotations.form import json_schema
 from core.settings import PRESET_NAMES, Settings, make_settings, option_names
 from core.settings.describe import describe_options
 
 router = APIRouter(prefix="/v1", tags=["options"], dependencies=[Depends(caller)], responses=responses(401))
+
+_SCHEMA_TYPE = "application/schema+json"
 
 _OPTION_EXAMPLE: dict[str, Any] = {
     "name": "matching.window",
@@ -90,6 +94,17 @@ def _option_schema(info: Any) -> dict[str, Any]:
     """JSON Schema of one option: type, range, default, meaning, unit, source."""
     adapter: TypeAdapter[Any] = TypeAdapter(Annotated[info.annotation, info])
     return adapter.json_schema()
+
+
+@router.get(
+    "/schemas/annotations.json",
+    summary="JSON Schema of our own form of annotations",
+    response_class=Response,
+    responses={200: {"content": {_SCHEMA_TYPE: {"schema": {"type": "object"}}}}},
+)
+def annotations_schema() -> Response:
+    """What a file of annotations may hold. Files of other tools have the forms that these tools give them."""
+    return Response(json.dumps(json_schema()), media_type=_SCHEMA_TYPE)
 
 
 @router.get("/presets", summary="Presets and the JSON Schema of settings")

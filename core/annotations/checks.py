@@ -21,7 +21,7 @@ _EDGE = 1e-6
 
 def invalid(path: str, what: str, code: str = "annotations_invalid") -> BadInput:
     """The error for the value at `path`."""
-    return BadInput(f"annotations: {path} {what}", code=code, where=path)
+    return BadInput(f"annotations: {path} {what}", code=code, where=path, what=what)
 
 
 def shown(value: object) -> str:
@@ -71,11 +71,6 @@ def as_list(value: object, path: str) -> list[object]:
     if not isinstance(value, list):
         raise invalid(path, f"must be a list, not {shown(value)}")
     return value
-
-
-def as_list_or_null(value: object, path: str) -> list[object]:
-    """`value` if it is a list; null is a list without members, as tools write it where they found nothing."""
-    return [] if value is None else as_list(value, path)
 
 
 def as_label(value: object, path: str) -> str:

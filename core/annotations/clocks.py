@@ -52,6 +52,9 @@ FROM_ZERO: Mapping[Clock, Clock] = {
 }
 """Clocks that count frames from 1, with their twins that count from 0."""
 
+FRAME_NUMBERS: tuple[Clock, ...] = ("index", "index+1")
+"""Clocks whose keys are numbers of frames."""
+
 SLACK = Fraction(1, 10)
 """Of the shortest frame: what a key may be off beyond its own last decimal. Containers and programs round, too."""
 
@@ -115,7 +118,7 @@ def ruler_of(clock: Clock, table: FrameTable) -> Ruler:
     shortest = min((later - earlier for earlier, later in pairwise(times)), default=1 / info.average_rate)
     slack = SLACK * shortest
     first = 1 if clock in FROM_ZERO else 0
-    if clock in ("index", "index+1"):
+    if clock in FRAME_NUMBERS:
         numbers = tuple(Fraction(i + first) for i in range(count))
         return Ruler(numbers, Fraction(count + first), Fraction(1), Fraction(1), Fraction(0))
     if clock in ("declared_rate", "declared_rate+1", "average_rate", "average_rate+1"):

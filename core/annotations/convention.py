@@ -69,22 +69,29 @@ class Fitted:
         }
 
 
-def fit_convention(keys: Mapping[str, Fraction], table: FrameTable, forced: str = "auto") -> Fitted:
+def fit_convention(
+    keys: Mapping[str, Fraction], table: FrameTable, forced: str = "auto", among: Sequence[str] = ()
+) -> Fitted:
     """Choose the clock that explains the keys best.
 
     Args:
         keys: exact value of every key.
         table: of the video.
         forced: a clock by name, taken without asking; ``auto`` fits.
+        among: names of the only clocks that the file's format leaves; none leaves all.
 
     Raises:
         BadInput: `annotation_times_unclear` when nothing explains the keys; it says what comes nearest.
     """
+    if forced == "auto" and len(among) == 1:
+        forced = among[0]
     if forced != "auto":
         return _fitted(read(clock_named(forced), keys, table), table, forced=True)
     if not keys:
         return Fitted(Reading("pts", {}, {}, ()), False)
-    readings = [read(clock, keys, table) for clock in possible_clocks(keys, table)]
+    readings = [
+        read(clock, keys, table) for clock in [clock_named(one) for one in among] or possible_clocks(keys, table)
+    ]
     best = min(readings, key=_rank)
     if len(best.strays) <= MAX_STRAYS * len(keys):
         others, doubtful = _others(best, readings, table)

@@ -27,6 +27,14 @@ class Annotations:
     entries: tuple[Entry, ...] = ()
     warnings: tuple[str, ...] = ()
     """Oddities that were tolerated, each naming its place."""
+    left_out: tuple[str, ...] = ()
+    """What the file holds and nobody reads, one sentence for each kind; `warnings` has these as well."""
+    format: str = "bladeatlas"
+    """Name of the format that the file was of."""
+    n_frames: int | None = None
+    """Frames of the video as the tool that wrote the file counted them; None when it does not say."""
+    clocks: tuple[str, ...] = ()
+    """Clocks that the keys can follow by the format (`core.annotations.clocks`); none = any."""
 
     @property
     def detections(self) -> tuple[Detection, ...]:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from fractions import Fraction
-from pathlib import Path
+from collections.abc import Sequence
 
 from core.annotations import checks
+from core.annotations.form import DetectionForm, EntryForm, MaskForm, as_form
 from core.annotations.model import Annotations, Entry
-from core.annotations.read import read_json
 from core.geometry.boxes import Box, box_iou
 from core.scene.detection import Detection, Mask, Polygon
 
@@ -16,9 +14,8 @@ MIN_MASK_IOU = 0.5
 """A mask with the same label and at least this overlap of boxes belongs to a detection."""
 
 
-def load_annotations(path: Path | None) -> Annotations:
-    """Read and check an annotation file; no file gives no annotations. Raises `BadInput` only."""
-    return Annotations() if path is None else parse_annotations(read_json(path))
+_NO_AREA = 1e-12
+"""Twice the area of a polygon along a line, as a share of the picture: much less than a pixel of the largest one."""
 
 
 def parse_annotations(value: object) -> Annotations:
@@ -41,58 +38,55 @@ def parse_annotations(value: object) -> Annotations:
     warnings: list[str] = []
     next_id = 0
     for key, content in top.items():
-        time = checks.parse_time(key)
-        path = checks.shown(key)
-        members = checks.as_object(content, path)
-        masks = _masks(members.get("masks"), f"{path}.masks", warnings)
-        boxes = checks.as_list_or_null(members.get("detections"), f"{path}.detections")
+        time, path = checks.parse_time(key), checks.shown(key)
+        form = as_form(EntryForm, content, path)
+        masks = _masks(form.masks, f"{path}.masks", warnings)
         detections = []
-        for i, item in enumerate(boxes):
-            here = f"{path}.detections[{i}]"
-            detections.append(_detection(checks.as_object(item, here), here, (next_id, key, time), masks, warnings))
+        for i, one in enumerate(form.detections):
+            polygon = _own_polygon(one, f"{path}.detections[{i}].polygon", warnings)
+            polygon = polygon or matching_mask(one.label, one.bbox, masks)
+            detections.append(
+                Detection(
+                    id=next_id,
+                    key=key,
+                    time_s=float(time),
+                    label=one.label,
+                    score=one.score,
+                    box=one.bbox,
+                    polygon=polygon,
+                    track_id=one.track_id,
+                )
+            )
             next_id += 1
         entries.append(Entry(key, time, tuple(detections), masks))
     return Annotations(tuple(entries), tuple(warnings))
 
 
-def _masks(value: object, path: str, warnings: list[str]) -> tuple[Mask, ...]:
+def _masks(forms: Sequence[MaskForm], path: str, warnings: list[str]) -> tuple[Mask, ...]:
     masks = []
-    for i, item in enumerate(checks.as_list_or_null(value, path)):
-        here = f"{path}[{i}]"
-        members = checks.as_object(item, here)
-        label = checks.as_label(members.get("label"), f"{here}.label")
-        polygon = _area(members.get("polygon"), f"{here}.polygon", warnings)
+    for i, one in enumerate(forms):
+        polygon = _with_area(one.polygon, f"{path}[{i}].polygon", warnings)
         if polygon is not None:
-            masks.append(Mask(label, polygon))
+            masks.append(Mask(one.label, polygon))
     return tuple(masks)
 
 
-def _detection(
-    members: Mapping[str, object], path: str, own: tuple[int, str, Fraction], masks: Sequence[Mask], warnings: list[str]
-) -> Detection:
-    """The detection of an object; `own` is its id, its time key and the key's time."""
-    number, key, time = own
-    label = checks.as_label(members.get("label"), f"{path}.label")
-    box = checks.as_box(members.get("bbox"), f"{path}.bbox")
-    polygon = members.get("polygon")
-    outline = None if polygon is None else _area(polygon, f"{path}.polygon", warnings)
-    return Detection(
-        id=number,
-        key=key,
-        time_s=float(time),
-        label=label,
-        score=checks.as_score(members.get("score"), f"{path}.score"),
-        box=box,
-        polygon=outline or matching_mask(label, box, masks),
-        track_id=checks.as_track_id(members.get("track_id"), f"{path}.track_id"),
-    )
+def _own_polygon(one: DetectionForm, path: str, warnings: list[str]) -> Polygon | None:
+    """The outline that a detection brings; one that is elsewhere than its box is a mistake of the program."""
+    polygon = None if one.polygon is None else _with_area(one.polygon, path, warnings)
+    if polygon is not None and box_iou(one.bbox, bounding_box(polygon)) == 0:
+        warnings.append(f"{path} lies outside of its own box and was left out")
+        return None
+    return polygon
 
 
-def _area(value: object, path: str, warnings: list[str]) -> Polygon | None:
-    """A polygon that encloses something; contours of one or two corners occur and mean nothing."""
-    polygon = checks.as_polygon(value, path)
+def _with_area(polygon: Polygon, path: str, warnings: list[str]) -> Polygon | None:
+    """A polygon that encloses something; contours of one or two corners, or along a line, occur and mean nothing."""
     if len(polygon) < 3:
         warnings.append(f"{path} has {len(polygon)} corners and was left out")
+        return None
+    if not has_area(polygon):
+        warnings.append(f"{path} encloses no area and was left out")
         return None
     return polygon
 
@@ -107,6 +101,13 @@ def matching_mask(label: str, box: Box, masks: Sequence[Mask]) -> Polygon | None
             if overlap > best_iou or (best is None and overlap == best_iou):
                 best, best_iou = mask.polygon, overlap
     return best
+
+
+def has_area(polygon: Polygon) -> bool:
+    """Whether a polygon encloses more than rounding leaves along a line."""
+    ends = (*polygon[1:], *polygon[:1])
+    doubled = sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in zip(polygon, ends, strict=True))
+    return abs(doubled) > _NO_AREA
 
 
 def bounding_box(polygon: Polygon) -> Box:

@@ -16,6 +16,8 @@ from core.video.table import FrameTable
 
 MAX_OUTSIDE_SHARE = 0.5
 """With more of the keys beyond the video, the annotations were made on another one."""
+MAX_MISCOUNT = 0.02
+"""Share of the frames that a tool may count too many or too few; with more, it went by another frame rate."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,10 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
     Raises:
         BadInput: `annotations_beyond_video`, `annotation_times_unclear`.
     """
-    fitted = fit_convention({entry.key: entry.time for entry in annotations.entries}, table, convention)
+    if convention == "auto" and _counted_otherwise(annotations, table):
+        annotations, convention = _retimed(annotations, table), "displayed"
+    keys = {entry.key: entry.time for entry in annotations.entries}
+    fitted = fit_convention(keys, table, convention, annotations.clocks)
     frames = fitted.reading.frames
     outside = tuple(key for key, frame in frames.items() if frame is None)
     allowed = 1.0 if table.info.truncated else MAX_OUTSIDE_SHARE
@@ -61,6 +66,8 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
     if outside:
         where = f"first key {shown(outside[0])}"
         flags = (*flags, Flag("annotations_outside_video", Severity.WARNING, float(len(outside)), 0.0, where))
+    if annotations.left_out:
+        flags = (*flags, Flag("annotations_partly_read", Severity.INFO, where="; ".join(annotations.left_out)))
     return PlacedAnnotations(
         detections=tuple(
             replace(
@@ -77,6 +84,23 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
         flags=flags,
         convention=fitted,
     )
+
+
+def _counted_otherwise(annotations: Annotations, table: FrameTable) -> bool:
+    """Whether the tool that numbered the frames took the video for one of another rate."""
+    counted, there = annotations.n_frames, len(table.rows)
+    return counted is not None and counted > 0 and abs(counted - there) > max(1.0, MAX_MISCOUNT * there)
+
+
+def _retimed(annotations: Annotations, table: FrameTable) -> Annotations:
+    """The same with times in s instead of the numbers, from 1, of frames that a tool spread evenly over the video."""
+    step = Fraction(table.info.duration_s) / (annotations.n_frames or 1)
+    entries = []
+    for entry in annotations.entries:
+        time = (entry.time - 1) * step
+        detections = tuple(replace(one, time_s=float(time)) for one in entry.detections)
+        entries.append(replace(entry, time=time, detections=detections))
+    return replace(annotations, entries=tuple(entries))
 
 
 def _seconds(value: Fraction, frame: int | None, clock: Clock, table: FrameTable) -> float:

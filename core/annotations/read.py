@@ -15,11 +15,15 @@ MAX_BYTES = 64 * 1024 * 1024
 20 MB. 64 MiB of the most wasteful JSON need 1.9 GiB once parsed (measured), half of what a stage may use."""
 
 
-def read_json(path: Path) -> object:
-    """The JSON value in an annotation file. The size is looked at before anything is read.
+_CUT_WORD = 5
+"""Characters of the longest word of JSON, false."""
+
+
+def read_bytes(path: Path) -> bytes:
+    """The content of an annotation file. The size is looked at before anything is read.
 
     Raises:
-        BadInput: `annotations_too_large`, or what `parse_json` or `require_file` raise.
+        BadInput: `annotations_too_large`, or what `require_file` raises.
     """
     size = require_file(path, "annotation")
     if size > MAX_BYTES:
@@ -28,7 +32,7 @@ def read_json(path: Path) -> object:
             code="annotations_too_large",
             where="annotations",
         )
-    return parse_json(path.read_bytes())
+    return path.read_bytes()
 
 
 def parse_json(data: bytes) -> object:
@@ -47,7 +51,8 @@ def parse_json(data: bytes) -> object:
         return json.loads(text, object_pairs_hook=_object)
     except json.JSONDecodeError as error:
         raise BadInput(
-            f"the annotations are not valid JSON: {error.msg} at line {error.lineno}, column {error.colno}",
+            f"the annotations are not valid JSON: {error.msg} at line {error.lineno}, column {error.colno}"
+            f"{_guess(error, text)}",
             code="annotations_malformed",
             where=f"line {error.lineno}, column {error.colno}",
         ) from None
@@ -63,6 +68,17 @@ def parse_json(data: bytes) -> object:
             code="annotations_malformed",
             where="annotations",
         ) from None
+
+
+def _guess(error: json.JSONDecodeError, text: str) -> str:
+    """What is probably wrong with the whole file."""
+    if error.msg == "Extra data" and text[: error.pos].rstrip(" \t\r")[-1:] == "\n":
+        return "; this seems to be one JSON value for each line, of which only one is read"
+    rest = text[error.pos :].strip()
+    # A word or number that ends with the file has its error a few characters before the end.
+    if error.msg.startswith("Unterminated string") or (len(rest) <= _CUT_WORD and not rest.endswith(("}", "]"))):
+        return "; the file seems to be cut off" if text.strip() else "; the file is empty"
+    return ""
 
 
 def _object(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:

@@ -19,6 +19,8 @@ _SHOWN = 10
 class AnnotationSummary:
     """Counts and oddities; times in seconds from the first frame."""
 
+    format: str
+    """Of the file, as `--format` takes it."""
     n_keys: int
     n_keys_with_detections: int
     n_detections: int
@@ -55,6 +57,7 @@ def summarise(annotations: Annotations, placed: PlacedAnnotations | None = None)
         warnings = advice(placed.convention) + warnings
         warnings += [f"key {key!r} lies outside the video" for key in placed.keys_outside]
     return AnnotationSummary(
+        format=annotations.format,
         n_keys=len(annotations.entries),
         n_keys_with_detections=sum(bool(entry.detections) for entry in annotations.entries),
         n_detections=len(detections),

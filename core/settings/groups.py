@@ -38,6 +38,21 @@ class InputSettings(Group):
         "index+1",
         "displayed",
     ] = option("auto", "what the time keys of the annotations mean; auto = fitted over all of them", source="method")
+    annotation_format: Literal[
+        "auto",
+        "bladeatlas",
+        "coco",
+        "cvat",
+        "label-studio",
+        "yolo",
+        "ultralytics",
+        "supervisely",
+        "labelme",
+        "voc",
+        "via",
+        "roboflow",
+        "datumaro",
+    ] = option("auto", "the format that the annotations are of; auto = told by their content", source="method")
 
 
 class FrameSettings(Group):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.annotations.parse import load_annotations
+from core.annotations.load import load_annotations
 from core.annotations.placed import place
 from core.annotations.summary import summarise
 from core.io.annotations import write_annotations
@@ -15,13 +15,15 @@ def run(task: StageTask) -> StageResult:
 
     Without an annotation file all are empty.
     """
-    annotations = load_annotations(task.annotations)
+    table, wanted = FrameTable.read(task.input("probe")), task.settings.input
+    annotations = load_annotations(task.annotations, (table.info.width, table.info.height), wanted.annotation_format)
     task.report(1, 2, f"{len(annotations.entries)} time keys")
-    placed = place(annotations, FrameTable.read(task.input("probe")), task.settings.input.time_convention)
+    placed = place(annotations, table, wanted.time_convention)
     write_annotations(task.out, placed.detections, placed.masks, placed.looked_at)
     summary = summarise(annotations, placed)
     return StageResult(
         {
+            "format": summary.format,
             "n_detections": summary.n_detections,
             "n_keys": summary.n_keys,
             "n_annotated_frames": summary.n_annotated_frames,

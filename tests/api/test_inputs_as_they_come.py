@@ -6,7 +6,9 @@ import io
 import json
 import zipfile
 from collections.abc import Sequence
+from pathlib import Path
 
+import jsonschema
 import pytest
 from fastapi.testclient import TestClient
 from PIL import Image
@@ -93,3 +95,57 @@ def test_a_stream_that_is_not_there_is_refused(client: TestClient) -> None:
     files = {"video": ("twov.mp4", (INPUTS / "twov.mp4").read_bytes()), "parameters": (None, parameters)}
     answer = client.post("/v1/inspections", files=files)
     assert (answer.status_code, answer.json()["code"]) == (422, "no_such_stream")
+
+
+FOREIGN = INPUTS / "foreign"
+SAMPLES = Path(__file__).parents[2] / "samples"
+
+
+@pytest.fixture(scope="module")
+def turbine() -> bytes:
+    return (SAMPLES / "turbine.mp4").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "name", ["coco.json", "cvat.xml", "cvat_export.zip", "labelstudio.json", "tools/datumaro_yolo.zip", "via3.json"]
+)
+def test_annotations_of_other_tools_are_accepted(name: str, turbine: bytes, client: TestClient) -> None:
+    files = {"video": ("a", turbine), "annotations": ("a", (FOREIGN / name).read_bytes())}
+    answer = client.post("/v1/inspections", files=files)
+    assert answer.status_code == 202, answer.text
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "code", "part"),
+    [
+        ("coco_results.json", {}, "annotations_unknown_format", "results of COCO alone"),
+        ("coco.json", {"input.annotation_format": "via"}, "annotations_unknown_format", "seems to be COCO"),
+        ("voc.xml", {}, "annotations_invalid", "names no size of its picture"),
+    ],
+)
+def test_other_annotations_are_refused_with_what_they_seem_to_be(
+    name: str, options: dict[str, str], code: str, part: str, turbine: bytes, client: TestClient
+) -> None:
+    files = {
+        "video": ("a", turbine),
+        "annotations": ("a", (FOREIGN / name).read_bytes()),
+        "parameters": (None, json.dumps({"options": options})),
+    }
+    answer = client.post("/v1/inspections", files=files)
+    assert (answer.status_code, answer.json()["code"]) == (422, code)
+    assert part in answer.json()["detail"]
+
+
+def test_annotations_made_on_pictures_of_another_shape_are_refused(client: TestClient, turbine: bytes) -> None:
+    shape = json.loads((FOREIGN / "labelme.json").read_text())
+    other = json.dumps({**shape, "imageWidth": 1280}).encode()
+    answer = client.post("/v1/inspections", files={"video": ("a", turbine), "annotations": ("a", other)})
+    assert (answer.status_code, answer.json()["code"]) == (422, "annotations_other_size")
+    assert "1280x720" in answer.json()["detail"]
+    assert "960x720" in answer.json()["detail"]
+
+
+def test_the_schema_of_our_own_form_is_published(client: TestClient) -> None:
+    answer = client.get("/v1/schemas/annotations.json")
+    assert (answer.status_code, answer.headers["content-type"]) == (200, "application/schema+json")
+    jsonschema.validate(json.loads((SAMPLES / "turbine.json").read_text()), answer.json())

@@ -40,7 +40,7 @@ def call(*words: str, expect: int, capsys: pytest.CaptureFixture[str]) -> str:
         ([str(ROOT / "README.md")], "'README.md' is not a video"),
         ([str(ROOT / "missing.mp4")], "'missing.mp4' does not exist"),
         ([str(ROOT)], "is a directory"),
-        ([VIDEO, str(ROOT / "README.md")], "not valid JSON"),
+        ([VIDEO, str(ROOT / "README.md")], "text of another kind, no JSON and no XML"),
         ([VIDEO, str(ROOT / "missing.json")], "'missing.json' does not exist"),
         ([VIDEO, ANNOTATIONS, "--set", "matching.windw=3"], "did you mean 'matching.window'"),
         ([VIDEO, ANNOTATIONS, "--set", "matching.window=-1"], "matching.window"),

@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from core.annotations.foreign.archive import MAX_FILES
+from core.annotations.foreign.formats import FORMATS, Format
+from core.annotations.foreign.sheet import plural
 from core.annotations.parse import MIN_MASK_IOU, parse_annotations
 from core.annotations.placed import MAX_OUTSIDE_SHARE
 from core.annotations.read import MAX_BYTES, parse_json
@@ -14,6 +17,19 @@ from core.errors import BadInput
 
 PAGE = (Path(__file__).parents[3] / "docs" / "annotations.md").read_text(encoding="utf-8")
 MISTAKES = re.findall(r"^\| `(.*)` \| `((?:annotations: |key |the annotations are).*)` \|$", PAGE, re.MULTILINE)
+
+
+def format_row(form: Format) -> str:
+    """The row of the page about a format of another tool."""
+    left_out = ", ".join(plural(what) for what in form.drops.values())
+    return f"| {form.title} (`{form.name}`) | {form.reads} | {left_out} | {form.frames} |"
+
+
+def test_the_table_of_formats_is_that_of_the_readers() -> None:
+    table = PAGE.partition("## Files of other tools")[2].partition("## Members")[0]
+    rows = [line for line in table.splitlines() if line.startswith("| ")]
+    assert rows[2:] == [format_row(form) for form in FORMATS]
+    assert f"{MAX_FILES:,} files" in table
 
 
 def test_the_example_is_read() -> None:

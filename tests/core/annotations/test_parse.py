@@ -11,8 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from core.annotations.checks import parse_time
+from core.annotations.load import load_annotations
 from core.annotations.model import Annotations
-from core.annotations.parse import load_annotations, matching_mask, parse_annotations
+from core.annotations.parse import matching_mask, parse_annotations
 from core.annotations.read import MAX_BYTES, parse_json
 from core.annotations.summary import summarise
 from core.errors import BadInput

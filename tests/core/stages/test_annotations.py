@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from core.errors import BadInput
 from core.report.build import build_report
 from core.settings import make_settings
 from core.stage import StageTask
@@ -50,3 +52,33 @@ def test_a_reading_that_is_told_leaves_no_doubt(probed: Path, tmp_path: Path) ->
     assert not [flag for flag in quality["flags"] if flag["code"].startswith("annotation_times")]
     assert (quality["time_convention"]["clock"], quality["time_convention"]["forced"]) == ("index", True)
     assert quality["time_convention"]["last"] == {"key": "7", "source_index": 7, "time_s": pytest.approx(7 / 12)}
+
+
+FOREIGN = INPUTS / "foreign"
+
+
+def test_a_file_of_another_tool_is_put_on_frames_and_what_is_not_read_reaches_the_result(
+    probed: Path, tmp_path: Path
+) -> None:
+    """The frames of m96.avi have a third of the pictures' width and height, so their shape."""
+    settings = make_settings(options={"input.annotation_format": "labelme"})
+    file = FOREIGN / "tools" / "labelme_frame_0003.json"
+    facts = annotations_stage.run(
+        StageTask("annotations", {}, settings, {"probe": probed}, {}, VIDEO, file, tmp_path)
+    ).facts
+    rows = json.loads((tmp_path / "detections.json").read_text())
+    assert [row["source_index"] for row in rows] == [3, 3]
+    assert rows[0]["box"] == pytest.approx([438 / 960, 336 / 720, 479 / 960, 377 / 720])
+    assert (facts["format"], facts["n_detections"]) == ("labelme", 2)
+    flags = {flag["code"]: flag for flag in facts["flags"]}
+    assert flags["annotations_partly_read"]["where"] == "1 circle is not read"
+    assert flags["annotations_partly_read"]["severity"] == "info"
+
+
+def test_the_size_of_the_pictures_is_held_against_the_video(probed: Path, tmp_path: Path) -> None:
+    document = json.loads((FOREIGN / "labelme.json").read_text())
+    file = tmp_path / "other.json"
+    file.write_text(json.dumps({**document, "imageHeight": 540}))
+    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, VIDEO, file, tmp_path)
+    with pytest.raises(BadInput, match=r"960x540 .* have 320x240"):
+        annotations_stage.run(task)

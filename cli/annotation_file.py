@@ -1,0 +1,45 @@
+"""The annotations that a command names: a file, or a folder of files as many tools write it."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from core.annotations.foreign.archive import packed_folder
+
+OPTION = "input.annotation_format"
+
+
+@contextmanager
+def annotation_file(path: Path) -> Iterator[Path]:
+    """The file itself; a folder is packed into a zip that lives as long as the context, and is the same every time."""
+    if not path.is_dir():
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="bladeatlas-") as folder:
+        packed = Path(folder, "annotations.zip")
+        packed_folder(path, packed)
+        yield packed
+
+
+@contextmanager
+def optional_annotation_file(path: Path | None) -> Iterator[Path | None]:
+    """The same where annotations may be missing."""
+    if path is None:
+        yield None
+        return
+    with annotation_file(path) as file:
+        yield file
+
+
+def with_format(parsed: argparse.Namespace) -> list[str]:
+    """The options ``NAME=VALUE`` of a command, with what `--format` says as one of them."""
+    return [*parsed.assignments, *([] if parsed.format is None else [f"{OPTION}={parsed.format}"])]
+
+
+def add_format(command: argparse.ArgumentParser) -> None:
+    """Let a command take `--format`."""
+    command.add_argument("--format", metavar="NAME", help=f"format of the annotations (told by content); sets {OPTION}")

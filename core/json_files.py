@@ -6,6 +6,10 @@ import json
 from pathlib import Path
 from typing import Any
 
+JsonObject = dict[str, Any]
+"""An object of a JSON file. `Any`, because its members are of many types: each gets its own where it is read, those of
+strangers' files by functions that name the place when it is of another."""
+
 
 def write_json(path: Path, value: object) -> None:
     """Write JSON in UTF-8, keys in their given order; ValueError for a number that is not finite."""

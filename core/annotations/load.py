@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 from xml.etree.ElementTree import Element
 
 from core.annotations.checks import shown
@@ -56,7 +55,7 @@ def annotations_from(data: bytes, frame: Size | None = None, form: str = AUTO) -
     return _of_documents([("", document)], frame, form, [])
 
 
-def _document(data: bytes) -> Any:
+def _document(data: bytes) -> object:
     """A JSON value, the root of an XML document, or the text when it is neither."""
     start = data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
     if start == b"<":
@@ -76,7 +75,7 @@ def _document(data: bytes) -> Any:
 
 
 def _archive(data: bytes, frame: Size | None, form: str) -> Annotations:
-    documents: list[tuple[str, Any]] = []
+    documents: list[tuple[str, object]] = []
     texts: dict[str, str] = {}
     others: list[str] = []
     for name, content in files_of_zip(data):
@@ -122,7 +121,7 @@ def _text(content: bytes) -> str | None:
 
 
 def _of_documents(
-    documents: Sequence[tuple[str, Any]], frame: Size | None, form: str, beside: Sequence[Any]
+    documents: Sequence[tuple[str, object]], frame: Size | None, form: str, beside: Sequence[object]
 ) -> Annotations:
     """Annotations of documents that are all of one format."""
     found: dict[str, Format | None] = {}
@@ -154,14 +153,14 @@ def _sheet_of(name: str) -> Sheet:
     return Sheet(next(one.drops for one in FORMATS if one.name == name))
 
 
-def _candidates(document: Any, form: str) -> list[Format]:
+def _candidates(document: object, form: str) -> list[Format]:
     container = "xml" if isinstance(document, Element) else "json"
     return [
         one for one in FORMATS if form in (AUTO, one.name) and one.container == container and one.recognises(document)
     ]
 
 
-def _not_read(document: Any, form: str) -> BadInput:
+def _not_read(document: object, form: str) -> BadInput:
     """The error for a document that is of no format, or not of the one that was asked for."""
     if form != AUTO:
         other = next(iter(_candidates(document, AUTO)), None)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 from core.annotations.clocks import FRAME_NUMBERS
 from core.annotations.model import Annotations
 from core.annotations.placed import PlacedAnnotations
 from core.errors import BadInput
+from core.json_files import JsonObject
 from core.scene.detection import Detection, Mask
 from core.video.table import FrameTable
 
@@ -16,7 +16,7 @@ _DECIMALS = 6
 """Of times: a millionth of a second is beyond every camera."""
 
 
-def own_form(annotations: Annotations) -> dict[str, Any]:
+def own_form(annotations: Annotations) -> JsonObject:
     """The entries under their own keys.
 
     Raises:
@@ -31,7 +31,7 @@ def own_form(annotations: Annotations) -> dict[str, Any]:
     return {entry.key: _entry(entry.detections, entry.masks) for entry in annotations.entries}
 
 
-def own_form_on_frames(annotations: Annotations, placed: PlacedAnnotations, table: FrameTable) -> dict[str, Any]:
+def own_form_on_frames(annotations: Annotations, placed: PlacedAnnotations, table: FrameTable) -> JsonObject:
     """The entries under the times of their frames, in seconds from the first frame.
 
     Two keys of one frame become one entry; keys outside the video are left out.
@@ -49,15 +49,15 @@ def _time(seconds: Fraction) -> str:
     return f"{float(seconds):.{_DECIMALS}f}"
 
 
-def _entry(detections: tuple[Detection, ...], masks: tuple[Mask, ...]) -> dict[str, Any]:
+def _entry(detections: tuple[Detection, ...], masks: tuple[Mask, ...]) -> JsonObject:
     return {
         "detections": [_detection(one) for one in detections],
         "masks": [{"label": one.label, "polygon": _corners(one.polygon)} for one in masks],
     }
 
 
-def _detection(one: Detection) -> dict[str, Any]:
-    found: dict[str, Any] = {"label": one.label, "bbox": list(one.box)}
+def _detection(one: Detection) -> JsonObject:
+    found: JsonObject = {"label": one.label, "bbox": list(one.box)}
     for name, value in (("score", one.score), ("track_id", one.track_id)):
         if value is not None:
             found[name] = value

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any
 
+from core.json_files import JsonObject
 from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
 
 WITHOUT_VIEW = (Reason.NO_REGISTERED_VIEW, Reason.FRAME_NOT_REGISTERED)
@@ -14,7 +14,7 @@ FEW_SUPPORT_POINTS = 20
 """Support of this many points or fewer is called weak (thesis 3.4.5)."""
 
 
-def funnel(rows: Sequence[DetectionRow], n_defects: int, method: str) -> dict[str, Any]:
+def funnel(rows: Sequence[DetectionRow], n_defects: int, method: str) -> JsonObject:
     """Detections left after each step. `surface_hit` and `verified` are null where the rules have no such step."""
     reasons = Counter(row.reason for row in rows)
     frame_found = len(rows) - reasons[Reason.NO_FRAME]
@@ -35,7 +35,7 @@ def funnel(rows: Sequence[DetectionRow], n_defects: int, method: str) -> dict[st
     }
 
 
-def losses(rows: Sequence[DetectionRow]) -> list[dict[str, Any]]:
+def losses(rows: Sequence[DetectionRow]) -> list[JsonObject]:
     """Detections without a mapped place by reason, most frequent first, with the share of all detections."""
     counts = Counter(row.reason for row in rows if row.reason)
     return [
@@ -44,7 +44,7 @@ def losses(rows: Sequence[DetectionRow]) -> list[dict[str, Any]]:
     ]
 
 
-def support_counts(rows: Sequence[DetectionRow], unique_points: int | None) -> dict[str, Any]:
+def support_counts(rows: Sequence[DetectionRow], unique_points: int | None) -> JsonObject:
     """Sparse support points per mapped detection: minimum, mean, maximum; null without a mapped detection."""
     counts = [row.support_points for row in rows if row.outcome == Outcome.MAPPED]
     return {

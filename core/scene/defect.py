@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+
+from core.json_files import JsonObject
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,7 @@ class Sighting:
     detected: bool = False
     """Whether the defect was detected in that frame."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """JSON form; the quality with four digits, the place with five."""
         row = {"frame_index": self.frame_index, "quality": round(self.quality, 4), "detected": self.detected}
         if self.at is not None:
@@ -27,7 +28,7 @@ class Sighting:
         return row
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> Sighting:
+    def from_dict(cls, row: JsonObject) -> Sighting:
         """From the JSON form."""
         at = (row["x"], row["y"]) if "x" in row else None
         return cls(row["frame_index"], row["quality"], at, row["detected"])
@@ -62,12 +63,12 @@ class EventRow:
     confidence: float | None
     """Probability that the defect is real and its place right."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """Flat JSON form, keys in the order of the columns."""
         return asdict(self)
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> EventRow:
+    def from_dict(cls, row: JsonObject) -> EventRow:
         """From the JSON form."""
         return cls(**row)
 
@@ -105,7 +106,7 @@ class Persistence:
         """k / n."""
         return self.k / self.n
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """JSON form."""
         return {"k": self.k, "n": self.n, "share": self.share}
 
@@ -115,7 +116,7 @@ class Confidence:
     """How sure a defect is, and what that is made of."""
 
     value: float
-    parts: Mapping[str, Any]
+    parts: JsonObject
     """By name; medians over its observations."""
 
 
@@ -155,9 +156,9 @@ class DefectRecord:
     evidence: str | None = None
     """Published path of its picture."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """JSON form, keys in the order that readers know."""
-        row: dict[str, Any] = {
+        row: JsonObject = {
             "id": self.id,
             "label": self.label,
             "labels": dict(self.labels),
@@ -181,7 +182,7 @@ class DefectRecord:
         return {name: value for name, value in row.items() if value is not None or name not in _ONLY_BY_CASTING}
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> DefectRecord:
+    def from_dict(cls, row: JsonObject) -> DefectRecord:
         """From the JSON form."""
         confidence, estimated = row["confidence"], row.get("approximate_detections")
         seen = row["persistence"]

@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Any
 
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 Polygon = tuple[tuple[float, float], ...]
 """At least three corners (x, y)."""
@@ -43,12 +44,12 @@ class Detection:
     source_index: int | None = None
     """Decoded frame of the video that shows it; None where the key lies outside the video, or is not yet put on it."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """JSON form, keys in the order of the fields."""
         return dict(self.__dict__)
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> Detection:
+    def from_dict(cls, row: JsonObject) -> Detection:
         """From the JSON form."""
         x1, y1, x2, y2 = (float(value) for value in row["box"])
         polygon = row.get("polygon")
@@ -158,12 +159,12 @@ class DetectionRow:
         """x1, y1, x2, y2 in shares of the source frame."""
         return (self.box_x1, self.box_y1, self.box_x2, self.box_y2)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """Flat JSON form, keys in the order of the columns."""
         return asdict(self)
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> DetectionRow:
+    def from_dict(cls, row: JsonObject) -> DetectionRow:
         """From the JSON form; ValueError for an outcome, reason or method that is not known."""
         reason, method = row["reason"], row["rung"]
         enums = {
@@ -180,7 +181,7 @@ DETECTION_COLUMNS: tuple[str, ...] = tuple(DetectionRow.__dataclass_fields__)
 
 def _row(detection: Detection, **found: Any) -> DetectionRow:
     x1, y1, x2, y2 = detection.box
-    values: dict[str, Any] = {
+    values: JsonObject = {
         "id": detection.id,
         "key": detection.key,
         "time_s": detection.time_s,

@@ -8,7 +8,8 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+
+from core.json_files import JsonObject
 
 
 class Role(StrEnum):
@@ -45,12 +46,12 @@ class Frame:
     role: Role
     """Why it takes part: `sampled`, `annotated`, `both`, `neighbour` or `added`."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """JSON form."""
         return asdict(self)
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> Frame:
+    def from_dict(cls, row: JsonObject) -> Frame:
         """From the JSON form; ValueError for a role that is not known."""
         return cls(**{**row, "role": Role(row["role"])})
 
@@ -110,7 +111,7 @@ class RunFrames:
         return RunFrames(tuple(replace(frame, time_s=frame.source_index / fps) for frame in self.frames))
 
 
-def frames_of(rows: Sequence[Mapping[str, Any]]) -> RunFrames:
+def frames_of(rows: Sequence[JsonObject]) -> RunFrames:
     """The frame table out of the JSON forms of its frames, in any order."""
     return RunFrames(tuple(sorted((Frame.from_dict(row) for row in rows), key=lambda frame: frame.index)))
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
 from core.flags import FlagFields, error_codes
+from core.json_files import JsonObject
 from core.scene.case import CaseKind, CaseRow
 from core.task_key import parts_of
 
@@ -48,7 +48,7 @@ def rank(candidates: Sequence[Candidate], veto: bool = True) -> list[Candidate]:
     return sorted(by_name, key=lambda candidate: standing(candidate, veto), reverse=True)
 
 
-def reduce_cases(candidates: Sequence[Candidate], veto: bool = True) -> dict[str, Any]:
+def reduce_cases(candidates: Sequence[Candidate], veto: bool = True) -> JsonObject:
     """Facts of the reducer over the cases that ended.
 
     A vetoed case can win here when all are: refinement may still find a model to trust around it.
@@ -60,7 +60,7 @@ def reduce_cases(candidates: Sequence[Candidate], veto: bool = True) -> dict[str
     return _facts(ranking[0], ranking)
 
 
-def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], veto: bool = True) -> dict[str, Any]:
+def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], veto: bool = True) -> JsonObject:
     """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
 
     Verified detections are counted for all of them or for none.
@@ -78,7 +78,7 @@ def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], veto: b
     return _facts(winner, [winner, *sorted(others, key=lambda candidate: standing(candidate, veto), reverse=True)])
 
 
-def candidates_of(facts: Mapping[str, Mapping[str, Any]], kind: CaseKind) -> list[Candidate]:
+def candidates_of(facts: Mapping[str, JsonObject], kind: CaseKind) -> list[Candidate]:
     """Cases of a kind out of a task's facts, ordered by key."""
     found = [facts[key] for key in parts_of(facts, kind)]
     rows = [CaseRow.from_facts(own, seconds=None, selected=False) for own in found]
@@ -93,7 +93,7 @@ def find_candidate(candidates: Sequence[Candidate], name: str) -> Candidate:
     raise StageFailed(f"the case {name} has no row", where="search")
 
 
-def _facts(winner: Candidate, ranking: Sequence[Candidate]) -> dict[str, Any]:
+def _facts(winner: Candidate, ranking: Sequence[Candidate]) -> JsonObject:
     row = winner.row
     return {
         "best": row.name,
@@ -107,7 +107,7 @@ def _facts(winner: Candidate, ranking: Sequence[Candidate]) -> dict[str, Any]:
     }
 
 
-def _place(candidate: Candidate) -> dict[str, Any]:
+def _place(candidate: Candidate) -> JsonObject:
     verified = {} if candidate.verified is None else {"verified_detections": candidate.verified}
     row = candidate.row
     return {"name": row.name, **verified, "registered_images": row.registered_images, "points3D": row.points3D}

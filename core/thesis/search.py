@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
+from core.json_files import JsonObject
 from core.scene.case import CaseKind, CaseRow
 
 WEAK_IMAGES = 80
@@ -19,7 +19,7 @@ def best_case(cases: Sequence[CaseRow], kind: CaseKind) -> CaseRow | None:
     return max(candidates, key=lambda row: row.score, default=None)
 
 
-def spread(cases: Sequence[CaseRow], kind: CaseKind) -> dict[str, Any]:
+def spread(cases: Sequence[CaseRow], kind: CaseKind) -> JsonObject:
     """Number of cases of a kind and the range of their models' sizes; null where no case has a model."""
     found = [row for row in cases if row.kind == kind and row.succeeded]
     images, points = [row.registered_images for row in found], [row.points3D for row in found]
@@ -33,7 +33,7 @@ def spread(cases: Sequence[CaseRow], kind: CaseKind) -> dict[str, Any]:
     }
 
 
-def refinement_gain(cases: Sequence[CaseRow]) -> dict[str, Any] | None:
+def refinement_gain(cases: Sequence[CaseRow]) -> JsonObject | None:
     """Best refined against best coarse case, absolute and in percent; None unless both exist."""
     coarse, refined = best_case(cases, CaseKind.COARSE), best_case(cases, CaseKind.REFINE)
     if coarse is None or refined is None:
@@ -53,7 +53,7 @@ def _percent(gain: int, base: int) -> float | None:
     return round(100.0 * gain / base, 1) if base else None
 
 
-def weak_cases(cases: Sequence[CaseRow]) -> dict[str, Any]:
+def weak_cases(cases: Sequence[CaseRow]) -> JsonObject:
     """Cases that would not carry an inspection, each with why; and the thesis's two counts."""
     weak = [{"name": row.name, "why": why, **_size(row)} for row in cases if (why := _weakness(row))]
     images = sum(row.registered_images < WEAK_IMAGES for row in cases)
@@ -61,7 +61,7 @@ def weak_cases(cases: Sequence[CaseRow]) -> dict[str, Any]:
     return {"cases": weak, "fewer_than_80_images": images, "fewer_than_25000_points": points, "of": len(cases)}
 
 
-def _size(row: CaseRow) -> dict[str, Any]:
+def _size(row: CaseRow) -> JsonObject:
     return {
         "status": row.status,
         "registered_images": row.registered_images,

@@ -89,7 +89,7 @@ def test_finished_uploads_start_an_inspection(backend: Backend, client: TestClie
     annotations = json.loads(ANNOTATIONS.read_text())
     answer = client.post("/v1/inspections", json={"video_upload": name, "annotations": annotations})
     assert answer.status_code == 202, answer.text
-    exported = json.loads((Path(__file__).parents[1] / "data" / "inputs" / "foreign" / "labelstudio.json").read_text())
+    exported = json.loads((INPUTS / "foreign" / "labelstudio.json").read_text())
     listed = client.post("/v1/inspections", json={"video_upload": name, "annotations": exported})
     assert listed.status_code == 202, "Label Studio exports a list"
     assert client.delete(url, headers=TUS).status_code == 204

@@ -14,9 +14,10 @@ from cli.main import main
 from core.annotations.load import load_annotations
 from core.annotations.placed import place
 from core.video.probe import probe_video
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[2]
-FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"
+FOREIGN = INPUTS / "foreign"
 VIDEO = ROOT / "samples" / "turbine.mp4"
 SAMPLE = ROOT / "samples" / "turbine.json"
 

@@ -128,7 +128,7 @@ ANNOTATIONS = [
     BadAnnotation("not text", b"\xff\xfe{\x00}\x00", "annotations_not_utf8", "not UTF-8"),
     BadAnnotation("too deep", b"[" * 200_000, "annotations_malformed", "nested too deeply"),
     BadAnnotation("long number", b"[" + b"1" * 9000 + b"]", "annotations_malformed", "thousands of digits"),
-    BadAnnotation("top level", b"[1, 2]", "annotations_invalid", "the top level must be an object"),
+    BadAnnotation("top level", b"[1, 2]", "annotations_unknown_format", "seem to be a JSON list of another kind"),
     BadAnnotation("duplicate key", b'{"1.2": {}, "1.2": {}}', "duplicate_key", 'key "1.2" occurs twice'),
     BadAnnotation("entry type", b'{"1.2": 5}', "annotations_invalid", '"1.2" must be an object, not 5'),
     BadAnnotation(

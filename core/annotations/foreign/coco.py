@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_list, as_object, invalid, shown
 from core.annotations.foreign.bitmaps import coco_outlines, largest
@@ -11,6 +10,7 @@ from core.annotations.foreign.sheet import Points, Shape, Sheet, frame_number, n
 from core.annotations.foreign.values import corner_box, needed_size, numbers, objects, pairs, text, track_of, whole
 from core.errors import BadInput
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 DROPS = {
     "keypoints": "set of keypoints",
@@ -20,18 +20,18 @@ DROPS = {
 }
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is a file of COCO."""
     if not isinstance(document, dict):
         return False
     return isinstance(document.get("images"), list) and isinstance(document.get("annotations"), list)
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read pictures with boxes, polygons and masks; every picture of the file was looked at."""
     categories = objects(document.get("categories"), "categories")
     labels = {_id(one.get("id"), "categories.id"): text(one.get("name"), "categories.name") for one in categories}
-    pictures: dict[Any, tuple[str, str, tuple[float, float]]] = {}
+    pictures: dict[object, tuple[str, str, tuple[float, float]]] = {}
     videos = set()
     for i, one in enumerate(objects(document["images"], "images")):
         where = f"images[{i}]"
@@ -52,7 +52,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
         sheet.add(key, known, [_shape(one, labels, where, sheet)], unit=size, size=size)
 
 
-def _shape(one: dict[str, Any], labels: dict[Any, str], where: str, sheet: Sheet) -> Shape:
+def _shape(one: JsonObject, labels: dict[object, str], where: str, sheet: Sheet) -> Shape:
     if one.get("keypoints"):
         sheet.drop("keypoints")
     attributes = one.get("attributes")
@@ -71,14 +71,14 @@ def _shape(one: dict[str, Any], labels: dict[Any, str], where: str, sheet: Sheet
     )
 
 
-def _box(value: Any, where: str) -> Box | None:
+def _box(value: object, where: str) -> Box | None:
     if not value:
         return None
     x, y, width, height = numbers(value, where, 4)
     return corner_box(x, y, width, height)
 
 
-def _outline(value: Any, where: str, sheet: Sheet) -> Points | None:
+def _outline(value: object, where: str, sheet: Sheet) -> Points | None:
     """The largest part of an outline."""
     if not value:
         return None
@@ -91,7 +91,7 @@ def _outline(value: Any, where: str, sheet: Sheet) -> Points | None:
     return max(parts, key=_area, default=None)
 
 
-def unpacked(value: dict[str, Any], where: str, sheet: Sheet) -> Points:
+def unpacked(value: JsonObject, where: str, sheet: Sheet) -> Points:
     """The largest part of run lengths {size [height, width], counts}."""
     height, width = (whole(one, f"{where}.size") for one in numbers(value.get("size"), f"{where}.size", 2))
     counts = value.get("counts")
@@ -104,7 +104,7 @@ def _area(corners: Points) -> float:
     return abs(sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in zip(corners, ends, strict=True)))
 
 
-def _key(one: dict[str, Any], where: str) -> tuple[str, str]:
+def _key(one: JsonObject, where: str) -> tuple[str, str]:
     known = text(one.get("file_name"), f"{where}.file_name") or where
     for member in ("frame_id", "frame_index"):
         if one.get(member) is not None:
@@ -112,13 +112,13 @@ def _key(one: dict[str, Any], where: str) -> tuple[str, str]:
     return number_in_name(known), known
 
 
-def _id(value: Any, where: str) -> Any:
+def _id(value: object, where: str) -> object:
     if isinstance(value, list | dict):
         raise invalid(where, f"must be a number or a text, not {shown(value)}")
     return value
 
 
-def _several(document: Any) -> BadInput:
+def _several(document: JsonObject) -> BadInput:
     videos = objects(document.get("videos"), "videos")
     names = ", ".join(shown(as_object(one, "videos").get("file_name", one.get("name"))) for one in videos[:5])
     return BadInput(

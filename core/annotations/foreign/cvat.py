@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
 from xml.etree.ElementTree import Element
 
 from core.annotations.checks import invalid, shown
@@ -24,6 +23,7 @@ from core.annotations.foreign.values import (
 )
 from core.errors import BadInput
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 DROPS = {
     "ellipse": "ellipse",
@@ -44,7 +44,7 @@ def recognises_xml(root: Element) -> bool:
     return root.tag == "annotations" and any(child.tag in ("version", "meta", "track", "image") for child in root)
 
 
-def read_xml(root: Element, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read_xml(root: Element, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read tracks (frame numbers are those of the video, from 0) or pictures (known by their names)."""
     meta = root.find("meta")
     sizes = [] if meta is None else [_original(one) for one in meta.iter("original_size")]
@@ -153,11 +153,11 @@ def _add_track(
         sheet.add(str(one.frame), f"frame {one.frame}", [shape], unit=size, size=size)
 
 
-def _frame(value: Any, where: str) -> str:
+def _frame(value: object, where: str) -> str:
     return frame_number(whole(value, f"{where}: frame"), f"{where}: frame")
 
 
-def recognises_json(document: Any) -> bool:
+def recognises_json(document: object) -> bool:
     """Whether a JSON value is the annotations of a CVAT backup: one object for each job, or one of a task."""
     jobs = document if isinstance(document, list) else [document]
     return bool(jobs) and all(
@@ -166,9 +166,11 @@ def recognises_json(document: Any) -> bool:
     )
 
 
-def read_json(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read_json(
+    document: JsonObject | list[JsonObject], name: str, sheet: Sheet, beside: Sequence[JsonObject] = ()
+) -> None:
     """Read shapes and tracks; frames count the pictures of the task, whose first one and step its `task.json` says."""
-    task: dict[str, Any] = next((one["data"] for one in beside if _is_task(one)), {})
+    task: JsonObject = next((one["data"] for one in beside if _is_task(one)), {})
     start = whole(task.get("start_frame", 0), "data.start_frame")
     found = _STEP.search(text(task.get("frame_filter"), "data.frame_filter"))
     step = max(1, int(found[1])) if found else 1
@@ -194,13 +196,11 @@ def read_json(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()
             _add_track(keyframes, text(track.get("label"), where), i, step, None, sheet, where, end)
 
 
-def _is_task(value: Any) -> bool:
+def _is_task(value: object) -> bool:
     return isinstance(value, dict) and isinstance(value.get("data"), dict) and "jobs" in value
 
 
-def _json_keyframes(
-    shapes: Iterable[Mapping[str, Any]], start: int, step: int, where: str, sheet: Sheet
-) -> list[Keyframe]:
+def _json_keyframes(shapes: Iterable[JsonObject], start: int, step: int, where: str, sheet: Sheet) -> list[Keyframe]:
     found = []
     for shape in shapes:
         kind = text(shape.get("type"), f"{where}.type")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_object, invalid, shown
 from core.annotations.foreign.coco import unpacked
@@ -20,6 +19,7 @@ from core.annotations.foreign.values import (
     whole,
 )
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 DROPS = {
     "label": "label of a whole picture",
@@ -35,12 +35,12 @@ DROPS = {
 _CUBOIDS = ("cuboid_3d", "cuboid_2d", "cuboid")
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is a subset of a Datumaro data set."""
     return isinstance(document, dict) and isinstance(document.get("items"), list) and "categories" in document
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read all items; the number is the attribute `frame` where every item has it, else in the item's id."""
     kinds = as_object(document["categories"], "categories").get("label") or {}
     labels = [
@@ -66,14 +66,14 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
                 sheet.add(key, known, [shape], unit=size, size=size)
 
 
-def _frame(item: dict[str, Any]) -> Any:
+def _frame(item: JsonObject) -> object:
     attributes, video = item.get("attr"), item.get("video_frame")
     if isinstance(video, dict) and "frame_index" in video:
         return video["frame_index"]
     return attributes.get("frame") if isinstance(attributes, dict) else None
 
 
-def _shape(one: dict[str, Any], labels: list[str], where: str, sheet: Sheet) -> Shape | None:
+def _shape(one: JsonObject, labels: list[str], where: str, sheet: Sheet) -> Shape | None:
     kind = text(one.get("type"), f"{where}.type")
     if kind not in ("bbox", "polygon", "mask"):
         sheet.drop("cuboid" if kind in _CUBOIDS else kind if kind in DROPS else "other")

@@ -25,11 +25,11 @@ Reader = Callable[[Any, str, Sheet, Sequence[Any]], None]
 """Takes a document, the name of its file, the sheet to fill, and the other JSON documents of the same archive."""
 
 
-def _never(_: Any) -> bool:
+def _never(_: object) -> bool:
     return False
 
 
-def _by_files(*_: Any) -> None:
+def _by_files(*_: object) -> None:
     raise TypeError("a format of many text files has no single document")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import Any
 from urllib.parse import unquote
 
 from core.annotations.checks import as_list, as_object, shown
@@ -23,6 +22,7 @@ from core.annotations.foreign.values import (
     whole,
 )
 from core.errors import BadInput
+from core.json_files import JsonObject
 
 DROPS = {
     "ellipse": "ellipse",
@@ -50,19 +50,19 @@ _MAX_SOURCE = 4096
 _PICTURE = re.compile(r"\.(jpe?g|png|bmp|tiff?|webp|gif)(\?.*)?$", re.IGNORECASE)
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is an export of Label Studio, or one task of it."""
     tasks = document if isinstance(document, list) else [document]
     return bool(tasks) and all(isinstance(task, dict) and (_is_task(task) or bool(_short(task))) for task in tasks)
 
 
-def _is_task(task: dict[str, Any]) -> bool:
+def _is_task(task: JsonObject) -> bool:
     if not isinstance(task.get("data"), dict):
         return False
     return isinstance(task.get("annotations"), list) or isinstance(task.get("predictions"), list)
 
 
-def _short(task: dict[str, Any]) -> list[dict[str, Any]]:
+def _short(task: JsonObject) -> list[JsonObject]:
     """Values of the regions of a task of JSON-MIN, which has them beside its data."""
     found = []
     for value in task.values():
@@ -72,11 +72,11 @@ def _short(task: dict[str, Any]) -> list[dict[str, Any]]:
     return found
 
 
-def _label_member(value: dict[str, Any]) -> str:
+def _label_member(value: JsonObject) -> str:
     return next((name for name in value if name == "labels" or _LABELS.fullmatch(name)), "")
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject | list[JsonObject], name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read every task: one video, or pictures with numbers in their names. A task that was done was looked at."""
     tasks = document if isinstance(document, list) else [document]
     videos = set()
@@ -102,7 +102,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
             _picture(results, source, where, sheet)
 
 
-def _source(data: dict[str, Any]) -> str:
+def _source(data: JsonObject) -> str:
     """The file of a task: of several members the first that names a picture or a video."""
     texts = [one for one in data.values() if isinstance(one, str) and len(one) <= _MAX_SOURCE]
     named = [one for one in texts if _PICTURE.search(one) or "/" in one]
@@ -115,7 +115,7 @@ def _file_of(source: str) -> str:
     return unquote(query.removeprefix("d=") if query.startswith("d=") else path)
 
 
-def _results(task: dict[str, Any], where: str, sheet: Sheet) -> Iterator[tuple[dict[str, Any], float | None]]:
+def _results(task: JsonObject, where: str, sheet: Sheet) -> Iterator[tuple[JsonObject, float | None]]:
     """Regions of the first annotation that was not cancelled, else of the first prediction, with their scores."""
     if not _is_task(task):
         for value in _short(task):
@@ -130,25 +130,25 @@ def _results(task: dict[str, Any], where: str, sheet: Sheet) -> Iterator[tuple[d
             yield region, None if score is None else number(score, f"{where}.score")
 
 
-def _work(task: dict[str, Any], where: str) -> tuple[list[dict[str, Any]], bool]:
+def _work(task: JsonObject, where: str) -> tuple[list[JsonObject], bool]:
     """Annotations that were not cancelled, and True; without any the predictions, and False."""
     annotations = objects(task.get("annotations"), f"{where}.annotations")
     done = [one for one in annotations if not one.get("was_cancelled")]
     return (done, True) if done else (objects(task.get("predictions"), f"{where}.predictions"), False)
 
 
-def _kind(region: dict[str, Any]) -> str:
+def _kind(region: JsonObject) -> str:
     kind = text(region.get("type"), "type")
     found = _LABELS.fullmatch(kind)
     return _BASES.get(found[1] if found else kind, "" if kind == "labels" else "choice")
 
 
-def _names(results: Sequence[tuple[dict[str, Any], float | None]]) -> dict[Any, str]:
+def _names(results: Sequence[tuple[JsonObject, float | None]]) -> dict[object, str]:
     """Labels that stand in results of their own, by the id of their region."""
     return {str(one.get("id")): _own_label(one) for one, _ in results if _own_label(one)}
 
 
-def _own_label(region: dict[str, Any]) -> str:
+def _own_label(region: JsonObject) -> str:
     value = region.get("value")
     if not isinstance(value, dict):
         return ""
@@ -156,7 +156,7 @@ def _own_label(region: dict[str, Any]) -> str:
     return str(labels[0]) if isinstance(labels, list) and labels and isinstance(labels[0], str) else ""
 
 
-def _video(results: Sequence[tuple[dict[str, Any], float | None]], where: str, sheet: Sheet) -> None:
+def _video(results: Sequence[tuple[JsonObject, float | None]], where: str, sheet: Sheet) -> None:
     sheet.clocks = FROM_ONE
     names = _names(results)
     for i, (region, score) in enumerate(results):
@@ -179,14 +179,14 @@ def _video(results: Sequence[tuple[dict[str, Any], float | None]], where: str, s
             sheet.add(str(one.frame), f"frame {one.frame}", [drawn], unit=PERCENT)
 
 
-def _keyframe(one: dict[str, Any], where: str) -> Keyframe:
+def _keyframe(one: JsonObject, where: str) -> Keyframe:
     x, y, width, height = (number(one.get(m), f"{where}.sequence: {m}") for m in ("x", "y", "width", "height"))
     frame = int(frame_number(whole(one.get("frame"), f"{where}.sequence: frame"), f"{where}.sequence: frame"))
     rotation = number(one.get("rotation") or 0, f"{where}.sequence: rotation")
     return Keyframe(frame, corner_box(x, y, width, height), rotation, follows=one.get("enabled") is not False)
 
 
-def _picture(results: Sequence[tuple[dict[str, Any], float | None]], source: str, where: str, sheet: Sheet) -> None:
+def _picture(results: Sequence[tuple[JsonObject, float | None]], source: str, where: str, sheet: Sheet) -> None:
     key, names = number_in_name(_file_of(source)), _names(results)
     sheet.add(key, source, unit=PERCENT)
     for i, (region, score) in enumerate(results):
@@ -206,7 +206,7 @@ def _picture(results: Sequence[tuple[dict[str, Any], float | None]], source: str
 
 
 def _geometry(
-    kind: str, value: dict[str, Any], size: Size | None, where: str, sheet: Sheet
+    kind: str, value: JsonObject, size: Size | None, where: str, sheet: Sheet
 ) -> tuple[tuple[float, float, float, float] | None, Points | None]:
     """Box and outline in percent."""
     if kind == "polygon":
@@ -226,7 +226,7 @@ def _geometry(
     return None, tuple((cx / aspect, cy) for cx, cy in wide or ())
 
 
-def _brush(value: dict[str, Any], size: Size | None, where: str, sheet: Sheet) -> Points:
+def _brush(value: JsonObject, size: Size | None, where: str, sheet: Sheet) -> Points:
     packed = as_list(value.get("rle"), f"{where}.rle")
     width, height = size or (0, 0)
     corners = largest(lambda: label_studio_outlines(packed, int(height), int(width), sheet.spend), sheet)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.foreign.bitmaps import largest, png_outlines
 from core.annotations.foreign.sheet import Points, Shape, Sheet, number_in_name
 from core.annotations.foreign.values import box_between, needed_size, number, objects, points, text
+from core.json_files import JsonObject
 
 DROPS = {
     "circle": "circle",
@@ -21,12 +21,12 @@ DROPS = {
 }
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is a file of LabelMe."""
     return isinstance(document, dict) and isinstance(document.get("shapes"), list) and "imagePath" in document
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read one picture; its number is in the name of the picture, else in that of the file."""
     picture = text(document.get("imagePath"), "imagePath") or name
     known = picture if any(char.isdigit() for char in picture) else name
@@ -36,7 +36,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
     sheet.add(number_in_name(known), known, drawn, unit=size, size=size)
 
 
-def _shape(one: dict[str, Any], where: str, sheet: Sheet) -> Shape | None:
+def _shape(one: JsonObject, where: str, sheet: Sheet) -> Shape | None:
     kind = text(one.get("shape_type"), f"{where}.shape_type") or "polygon"
     if kind not in ("rectangle", "polygon", "mask"):
         sheet.drop(kind if kind in DROPS else "other")

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_list, as_object
 from core.annotations.foreign.sheet import FROM_ZERO, SECONDS, Shape, Sheet, frame_number, number_in_name, seconds_key
 from core.annotations.foreign.values import centre_box, number, numbers, objects, points, size_of, text, track_of, whole
+from core.json_files import JsonObject
 
 DROPS = {"keypoints": "set of keypoints", "class": "class of a whole picture", "frame": "frame without a list"}
 _NO_MODELS = ("time_offset", "frame_offset", "fps")
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is an answer of Roboflow's inference."""
     if not isinstance(document, dict):
         return False
@@ -22,7 +22,7 @@ def recognises(document: Any) -> bool:
     return isinstance(document.get("predictions"), list) and isinstance(document.get("image"), dict)
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read the frames of a video, or one picture whose number is in the file's name. All were looked at."""
     if "predictions" in document:
         _add(number_in_name(name), name, document, name, sheet)
@@ -43,7 +43,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
             _add(key, f"frame {key}", answer, f"{model}[{i}]", sheet)
 
 
-def _add(key: str, name: str, answer: dict[str, Any], where: str, sheet: Sheet) -> None:
+def _add(key: str, name: str, answer: JsonObject, where: str, sheet: Sheet) -> None:
     image = as_object(answer.get("image") or {}, f"{where}.image")
     size = size_of(image.get("width"), image.get("height"), f"{where}.image")
     sheet.add(key, name, unit=size, size=size)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_object
 from core.annotations.foreign.bitmaps import largest, png_outlines
 from core.annotations.foreign.sheet import FROM_ZERO, Points, Shape, Sheet, frame_number, number_in_name
 from core.annotations.foreign.values import box_between, needed_size, numbers, objects, points, text, whole
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 DROPS = {
     "point": "point",
@@ -24,14 +24,14 @@ DROPS = {
 _OTHERS = {"point": "point", "line": "line", "graph": "graph", "graph_nodes": "graph"}
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is an annotation of Supervisely."""
     if not isinstance(document, dict) or not isinstance(document.get("size"), dict):
         return False
     return isinstance(document.get("objects"), list) and "height" in document["size"]
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read the figures of a video's frames (`index` is from 0), or of one picture, known by the file's name."""
     size = needed_size(document["size"].get("width"), document["size"].get("height"), "size")
     things = objects(document["objects"], "objects")
@@ -62,7 +62,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
                 sheet.add(key, f"frame {key}", [shape], unit=size, size=size)
 
 
-def _shape(figure: dict[str, Any], label: str, track: int | None, where: str, sheet: Sheet) -> Shape | None:
+def _shape(figure: JsonObject, label: str, track: int | None, where: str, sheet: Sheet) -> Shape | None:
     kind = text(figure.get("geometryType"), f"{where}.geometryType")
     box: Box | None = None
     outline: Points | None = None
@@ -82,7 +82,7 @@ def _shape(figure: dict[str, Any], label: str, track: int | None, where: str, sh
     return None if box is None else Shape(label, box, outline, track_id=track)
 
 
-def _bitmap(bitmap: dict[str, Any], where: str, sheet: Sheet) -> Points:
+def _bitmap(bitmap: JsonObject, where: str, sheet: Sheet) -> Points:
     x, y = numbers(bitmap.get("origin"), f"{where}.bitmap.origin", 2)
     data = text(bitmap.get("data"), f"{where}.bitmap.data")
     return largest(lambda: png_outlines(data, (x, y), sheet.spend, packed=True), sheet)

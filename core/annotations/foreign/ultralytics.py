@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_list, as_object
 from core.annotations.foreign.sheet import FROM_ZERO, SHARES, Shape, Sheet, number_in_name
 from core.annotations.foreign.values import number, numbers, objects, text, track_of
+from core.json_files import JsonObject
 
 DROPS = {"keypoints": "set of keypoints", "class": "class of a whole picture"}
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is the results of a picture, or a list of such results."""
     if not isinstance(document, list):
         return False
@@ -21,7 +21,7 @@ def recognises(document: Any) -> bool:
     return bool(found) and all(isinstance(one, dict) and "name" in one and "class" in one for one in found)
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: list[object], name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read the results of one picture, whose number is in the file's name, or of all frames from the first on."""
     if not isinstance(document[0], list):
         _add(number_in_name(name), name, document, "results", sheet)
@@ -31,7 +31,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
         _add(str(i), f"frame {i}", frame, f"[{i}]", sheet)
 
 
-def _add(key: str, name: str, results: Any, where: str, sheet: Sheet) -> None:
+def _add(key: str, name: str, results: object, where: str, sheet: Sheet) -> None:
     shapes = [_shape(one, f"{where}[{i}]", sheet) for i, one in enumerate(objects(results, where))]
     drawn = [one for one in shapes if one is not None]
     ends = [side for one in drawn if one.box is not None for side in one.box]
@@ -39,7 +39,7 @@ def _add(key: str, name: str, results: Any, where: str, sheet: Sheet) -> None:
     sheet.add(key, name, drawn, unit=unit)
 
 
-def _shape(one: dict[str, Any], where: str, sheet: Sheet) -> Shape | None:
+def _shape(one: JsonObject, where: str, sheet: Sheet) -> Shape | None:
     if "box" not in one:
         sheet.drop("class")
         return None
@@ -65,7 +65,7 @@ def _shape(one: dict[str, Any], where: str, sheet: Sheet) -> Shape | None:
     )
 
 
-def _segments(value: Any, where: str) -> tuple[tuple[float, float], ...] | None:
+def _segments(value: object, where: str) -> tuple[tuple[float, float], ...] | None:
     if not value:
         return None
     sides = as_object(value, f"{where}.segments")

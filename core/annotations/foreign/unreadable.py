@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Any
 from xml.etree.ElementTree import Element
 
 from core.annotations.checks import parse_time, shown
@@ -76,7 +75,7 @@ def xml_kind(root: Element) -> BadInput:
     return unreadable(f"XML of another kind, with the root <{root.tag[:60]}>")
 
 
-def json_kind(value: Any) -> BadInput:
+def json_kind(value: object) -> BadInput:
     """The error for JSON that no reader knows."""
     for looks_so, what, advice in _KINDS:
         if looks_so(value):
@@ -92,7 +91,7 @@ def json_kind(value: Any) -> BadInput:
     return unreadable(f"JSON that is neither an object nor a list, but {shown(value)}")
 
 
-def is_own(value: Any) -> bool:
+def is_own(value: object) -> bool:
     """Whether a JSON value is of our own form: an object with a key that is a time, or without any."""
     return isinstance(value, dict) and (not value or any(_is_time(key) for key in value))
 
@@ -105,17 +104,17 @@ def _is_time(key: str) -> bool:
     return True
 
 
-def _all_have(*members: str) -> Callable[[Any], bool]:
+def _all_have(*members: str) -> Callable[[object], bool]:
     """Whether a value is a list whose objects all have these members."""
 
-    def looks_so(value: Any) -> bool:
+    def looks_so(value: object) -> bool:
         listed = value if isinstance(value, list) else []
         return bool(listed) and all(isinstance(one, dict) and set(members) <= set(one) for one in listed)
 
     return looks_so
 
 
-_KINDS: tuple[tuple[Callable[[Any], bool], str, str], ...] = (
+_KINDS: tuple[tuple[Callable[[object], bool], str, str], ...] = (
     (
         _all_have("image_id", "category_id"),
         "results of COCO alone",

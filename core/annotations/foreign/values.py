@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_list, as_number, as_object, invalid, shown
 from core.annotations.foreign.sheet import Points, Size
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 
-def objects(value: Any, where: str) -> list[dict[str, Any]]:
+def objects(value: object, where: str) -> list[JsonObject]:
     """A list of objects; null is an empty one."""
     return [] if value is None else [as_object(one, f"{where}[{i}]") for i, one in enumerate(as_list(value, where))]
 
 
-def numbers(value: Any, where: str, count: int | None = None) -> list[float]:
+def numbers(value: object, where: str, count: int | None = None) -> list[float]:
     """A list of finite numbers, of a certain length."""
     items = as_list(value, where)
     if count is not None and len(items) != count:
@@ -24,7 +24,7 @@ def numbers(value: Any, where: str, count: int | None = None) -> list[float]:
     return [number(item, f"{where}[{i}]") for i, item in enumerate(items)]
 
 
-def number(value: Any, where: str) -> float:
+def number(value: object, where: str) -> float:
     """A finite number; tools write numbers as texts here and there."""
     if isinstance(value, str):
         try:
@@ -34,7 +34,7 @@ def number(value: Any, where: str) -> float:
     return as_number(value, where)
 
 
-def whole(value: Any, where: str) -> int:
+def whole(value: object, where: str) -> int:
     """A whole number."""
     found = number(value, where)
     if found != int(found):
@@ -42,7 +42,7 @@ def whole(value: Any, where: str) -> int:
     return int(found)
 
 
-def text(value: Any, where: str) -> str:
+def text(value: object, where: str) -> str:
     """A text, or a number as text; null is an empty one."""
     if value is None:
         return ""
@@ -51,7 +51,7 @@ def text(value: Any, where: str) -> str:
     return str(value)
 
 
-def size_of(width: Any, height: Any, where: str) -> Size | None:
+def size_of(width: object, height: object, where: str) -> Size | None:
     """Width and height in pixels; None when they are missing or zero, as tools write what they do not know."""
     if width is None or height is None:
         return None
@@ -59,7 +59,7 @@ def size_of(width: Any, height: Any, where: str) -> Size | None:
     return found if min(found) > 0 else None
 
 
-def needed_size(width: Any, height: Any, where: str) -> Size:
+def needed_size(width: object, height: object, where: str) -> Size:
     """Width and height in pixels of a format that always names them."""
     found = size_of(width, height, where)
     if found is None:
@@ -74,7 +74,7 @@ def pairs(flat: Sequence[float], where: str) -> Points:
     return tuple(zip(flat[::2], flat[1::2], strict=True))
 
 
-def points(value: Any, where: str) -> Points:
+def points(value: object, where: str) -> Points:
     """Corners from [[x, y], ...] or [{"x": ..., "y": ...}, ...]."""
     corners: list[tuple[float, float]] = []
     for i, one in enumerate(as_list(value, where)):
@@ -105,7 +105,7 @@ def centre_box(x: float, y: float, width: float, height: float) -> Box:
     return (x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
 
-def track_of(value: Any) -> str | int | None:
+def track_of(value: object) -> str | int | None:
     """A track's name, if it is one; many files have -1, empty texts or nothing where there is none."""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         return None

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.annotations.checks import as_list, as_object, shown
 from core.annotations.foreign.sheet import SECONDS, Points, Shape, Sheet, number_in_name, seconds_key
 from core.annotations.foreign.values import box_between, corner_box, number, numbers, pairs, text
 from core.errors import BadInput
 from core.geometry.boxes import Box
+from core.json_files import JsonObject
 
 DROPS = {
     "circle": "circle",
@@ -26,7 +26,7 @@ _LABELS = ("label", "labels", "class", "name", "type", "category", "defect")
 _VIDEO = 4
 
 
-def recognises(document: Any) -> bool:
+def recognises(document: object) -> bool:
     """Whether a JSON value is a project or an export of VIA."""
     if not isinstance(document, dict):
         return False
@@ -37,7 +37,7 @@ def recognises(document: Any) -> bool:
     )
 
 
-def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(document: JsonObject, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read all pictures of a project, or the times of its video. Coordinates are pixels; VIA names no sizes."""
     if "metadata" in document and "file" in document:
         _read_3(document, sheet)
@@ -52,7 +52,7 @@ def read(document: Any, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> 
         sheet.add(number_in_name(known), known, [one for one in shapes if one is not None], unit=None)
 
 
-def _shape_2(value: Any, where: str, sheet: Sheet) -> Shape | None:
+def _shape_2(value: object, where: str, sheet: Sheet) -> Shape | None:
     region = as_object(value, where)
     drawn = as_object(region.get("shape_attributes"), f"{where}.shape_attributes")
     kind = text(drawn.get("name"), f"{where}.name")
@@ -68,7 +68,7 @@ def _shape_2(value: Any, where: str, sheet: Sheet) -> Shape | None:
     return None
 
 
-def _label(attributes: dict[str, Any]) -> str:
+def _label(attributes: JsonObject) -> str:
     """The attribute that is the label by its name, else the only or first one that says something."""
     names = sorted(attributes, key=lambda name: _LABELS.index(name.lower()) if name.lower() in _LABELS else 99)
     for name in names:
@@ -80,7 +80,7 @@ def _label(attributes: dict[str, Any]) -> str:
     return ""
 
 
-def _read_3(document: dict[str, Any], sheet: Sheet) -> None:
+def _read_3(document: JsonObject, sheet: Sheet) -> None:
     files = as_object(document["file"], "file")
     views = as_object(document.get("view") or {}, "view")
     attributes = as_object(document.get("attribute") or {}, "attribute")
@@ -111,9 +111,9 @@ def _read_3(document: dict[str, Any], sheet: Sheet) -> None:
             sheet.add(key, f"{known} at {key}" if moments else known, [Shape(label, box, outline)], unit=None)
 
 
-def _file(view: str, files: dict[str, Any], views: dict[str, Any]) -> dict[str, Any]:
+def _file(view: str, files: JsonObject, views: JsonObject) -> JsonObject:
     ids = as_object(views.get(view) or {"fid_list": [view]}, f"view.{view}").get("fid_list")
-    found: Any = next((files[str(one)] for one in as_list(ids, "fid_list") if str(one) in files), {})
+    found: object = next((files[str(one)] for one in as_list(ids, "fid_list") if str(one) in files), {})
     return as_object(found, "file")
 
 
@@ -128,9 +128,9 @@ def _geometry_3(drawn: Sequence[float], where: str, sheet: Sheet) -> tuple[Box |
     return None, None
 
 
-def _label_3(values: dict[str, Any], attributes: dict[str, Any]) -> str:
+def _label_3(values: JsonObject, attributes: JsonObject) -> str:
     """The value of an attribute; one that was chosen from a list is the number of its option."""
-    plain: dict[str, Any] = {}
+    plain: JsonObject = {}
     for number_of, value in values.items():
         declared = attributes.get(number_of)
         declared = declared if isinstance(declared, dict) else {}

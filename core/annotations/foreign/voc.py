@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 from xml.etree.ElementTree import Element
 
 from core.annotations.checks import invalid
@@ -18,7 +17,7 @@ def recognises(root: Element) -> bool:
     return root.tag == "annotation" and (root.find("object") is not None or root.find("filename") is not None)
 
 
-def read(root: Element, name: str, sheet: Sheet, beside: Sequence[Any] = ()) -> None:
+def read(root: Element, name: str, sheet: Sheet, beside: Sequence[object] = ()) -> None:
     """Read one picture; its number is in the name of the picture, else in that of the file."""
     known = (root.findtext("filename") or "").strip()
     known = known if any(char.isdigit() for char in known) else name

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import yaml
 
@@ -17,6 +16,7 @@ from core.annotations.checks import as_number, invalid, shown
 from core.annotations.foreign.sheet import SHARES, Shape, Sheet, number_in_name
 from core.annotations.foreign.values import centre_box, pairs
 from core.errors import BadInput
+from core.json_files import JsonObject
 
 DROPS = {"keypoints": "set of keypoints"}
 _MAX_YAML = 1 << 18
@@ -143,7 +143,7 @@ def _class_names(texts: Mapping[str, str]) -> tuple[dict[int, str], bool]:
     return {}, False
 
 
-def _yaml(content: str, name: str) -> dict[str, Any]:
+def _yaml(content: str, name: str) -> JsonObject:
     if len(content) > _MAX_YAML:
         raise BadInput(f"'{name}' is too long for a list of classes", code="annotations_too_large", where=name)
     try:
@@ -154,7 +154,7 @@ def _yaml(content: str, name: str) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
 
 
-def _names_of(value: Any, where: str) -> dict[int, str]:
+def _names_of(value: object, where: str) -> dict[int, str]:
     if isinstance(value, list) and all(isinstance(one, str) for one in value):
         return dict(enumerate(value))
     if isinstance(value, dict) and all(_CLASS.fullmatch(key) and isinstance(one, str) for key, one in value.items()):

@@ -16,9 +16,9 @@ from core.annotations.parse import has_area, parse_annotations
 from core.annotations.read import parse_json, read_bytes
 from core.errors import BadInput
 from tests.core.annotations.test_parse import DETECTIONS, ENTRIES, JSON_VALUES, TIMES
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[3]
-INPUTS = ROOT / "tests" / "data" / "inputs"
 VALIDATOR = jsonschema.Draft202012Validator(json_schema())
 BEYOND_A_SCHEMA = {"box_inverted", "duplicate_key"}
 SHARES = st.sampled_from([0, 0.1, 0.25, 0.5, 1, 1.0])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 from itertools import groupby
-from pathlib import Path
 from typing import Any
 
 import cv2
@@ -29,8 +28,9 @@ from core.annotations.foreign.sheet import MAX_PIXELS, Sheet
 from core.annotations.masks import rasterise
 from core.errors import BadInput
 from core.scene.frame import Crop
+from tests.inputs import INPUTS
 
-TOOLS = Path(__file__).parents[3] / "data" / "inputs" / "foreign" / "tools"
+TOOLS = INPUTS / "foreign" / "tools"
 
 
 def runs_of(flat: NDArray[np.uint8]) -> list[int]:

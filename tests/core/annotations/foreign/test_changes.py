@@ -17,9 +17,10 @@ from core.annotations.model import Annotations
 from core.errors import BadInput
 from tests.core.annotations.foreign.test_readers import CVAT_VIDEO
 from tests.core.making_annotations import FRAME, read, zipped
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[4]
-FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"
+FOREIGN = INPUTS / "foreign"
 
 
 def test_long_texts_take_no_long_time() -> None:

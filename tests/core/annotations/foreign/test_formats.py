@@ -19,9 +19,10 @@ from core.settings.groups import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameTable
 from tests.core.making_annotations import FRAME, read, zipped
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[4]
-FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"
+FOREIGN = INPUTS / "foreign"
 DENT = (438 / 960, 336 / 720, 478 / 960, 376 / 720)
 CVAT = (438.1 / 960, 336.2 / 720, 478.3 / 960, 376.4 / 720)
 

@@ -17,9 +17,10 @@ from core.errors import BadInput
 from core.video.probe import probe_video
 from core.video.table import FrameTable
 from tests.core.making_annotations import read, zipped
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[4]
-FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"
+FOREIGN = INPUTS / "foreign"
 
 
 @pytest.fixture(scope="module")

@@ -15,9 +15,10 @@ from core.annotations.load import load_annotations
 from core.annotations.model import Annotations
 from core.annotations.parse import bounding_box
 from core.geometry.boxes import Box
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[4]
-TOOLS = ROOT / "tests" / "data" / "inputs" / "foreign" / "tools"
+TOOLS = INPUTS / "foreign" / "tools"
 SAMPLE = load_annotations(ROOT / "samples" / "turbine.json").entries
 FRAME = (960.0, 720.0)
 N_FRAMES = 12

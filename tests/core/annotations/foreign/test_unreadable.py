@@ -16,9 +16,10 @@ from core.intake import answer, check_input
 from core.scene.detection import DETECTION_COLUMNS
 from core.settings import make_settings
 from tests.core.making_annotations import zipped
+from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[4]
-FOREIGN = ROOT / "tests" / "data" / "inputs" / "foreign"
+FOREIGN = INPUTS / "foreign"
 SAMPLE = ROOT / "samples" / "turbine.json"
 VIDEO = ROOT / "samples" / "turbine.mp4"
 CREATE_ML = FOREIGN / "tools" / "supervision_createml.json"

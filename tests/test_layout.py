@@ -15,25 +15,6 @@ LEAST = 60
 MOST = 400
 READERS = Path(__file__).parents[1] / "core" / "annotations" / "foreign"
 """One module for each format, however short."""
-SMALL_STILL = frozenset(
-    {
-        "core/annotations/advice.py",
-        "core/annotations/masks.py",
-        "core/checks/extent.py",
-        "core/dense/fusion.py",
-        "core/dense/patchmatch/consistency.py",
-        "core/features/sift.py",
-        "core/mapping/support_check.py",
-        "core/mapping/verified.py",
-        "core/report/funnel.py",
-        "core/report/load.py",
-        "core/report/missing.py",
-        "core/sparse/confirm.py",
-        "core/timeline/numbering.py",
-        "core/timeline/paint.py",
-    }
-)
-"""Small modules of `core` with one importer that are still to be joined with their subject. No other may be added."""
 
 
 def modules(root: Path) -> dict[str, Path]:
@@ -87,7 +68,7 @@ def test_no_module_is_too_long() -> None:
 
 
 def test_no_small_module_has_a_single_importer() -> None:
-    assert small(ROOT) - SMALL_STILL == set()
+    assert small(ROOT) == set()
 
 
 @pytest.mark.parametrize(("users", "lines", "is_small"), [(1, 59, True), (1, 60, False), (2, 3, False), (0, 3, False)])

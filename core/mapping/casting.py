@@ -17,11 +17,46 @@ from core.mapping.patches import Patch, split_patches
 from core.mapping.pixels import Footprint
 from core.mapping.scene import Scene, places_nearest
 from core.mapping.sigma import place_sigma
-from core.mapping.support_check import depth_agreement
 from core.mapping.surface import Hits
 from core.scene.detection import Reason
 
 F64 = NDArray[np.float64]
+
+AGREE_SPACINGS = 6.0
+"""Depths agree within this many point spacings,"""
+AGREE_SHARE = 0.02
+"""or within this share of the distance."""
+MIN_POINTS = 3
+"""With fewer points nothing is said about agreement."""
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How many depths were compared with a place, and which share of them agrees with it."""
+
+    share: float | None
+    """None with fewer than `MIN_POINTS` depths."""
+    count: int
+
+
+def depth_agreement(distances: F64, expected: float, spacing: float) -> Agreement:
+    """Compare the depths of sparse points in a detection's box with that of its patch.
+
+    Points behind the patch are no contradiction where the detection shows two surfaces: only what lies
+    before it, or on it, is counted against or for it.
+
+    Args:
+        distances: (n,) from the camera, scene units, of the sparse points in the box.
+        expected: of the patch.
+        spacing: of the fused cloud.
+    """
+    tolerance = max(AGREE_SPACINGS * spacing, AGREE_SHARE * expected)
+    counted = distances[distances < expected + tolerance]
+    if len(counted) < MIN_POINTS:
+        return Agreement(None, len(counted))
+    return Agreement(float((np.abs(counted - expected) <= tolerance).mean()), len(counted))
+
+
 I64 = NDArray[np.int64]
 
 MIN_VISIBLE = 5

@@ -1,18 +1,38 @@
-"""Reads the tables that stages left in their result folders."""
+"""Reads the tables that stages left in their result folders, and joins those of several models."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
 from core.io.annotations import read_detections, read_rows
 from core.io.frames import read_frames, read_registered
 from core.io.timeline import read_defects, read_events
-from core.report.models import join_detections
 from core.report.record import RunTables
+from core.scene.detection import DetectionRow, Outcome
 from core.scene.frame import RunFrames
 from core.task_key import key_of, piece_of, stage_of
+
+_RANK = {Outcome.MAPPED: 0, Outcome.APPROXIMATE: 1, Outcome.UNPLACED: 2}
+"""Outcomes in the order in which a model's row counts."""
+
+
+def join_detections(tables: Sequence[Sequence[DetectionRow]]) -> list[DetectionRow]:
+    """One row per detection, in the order of the first table: the best placed one, of equals the first model's.
+
+    Args:
+        tables: rows by model, the first model's first; every table has a row for every detection.
+    """
+    if not tables:
+        return []
+    by_id = [{row.id: row for row in table} for table in tables]
+    joined = []
+    for row in tables[0]:
+        rows = [rows_of[row.id] for rows_of in by_id if row.id in rows_of]
+        joined.append(min(rows, key=lambda one: _RANK[one.outcome]))
+    return joined
+
 
 T = TypeVar("T")
 

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from core.checks.parallax import cases_parallax
 from core.flags import Flag, FlagFields, Severity, Verdict, error_codes
-from core.report.funnel import funnel, losses, support_counts
-from core.report.missing import missing_parts
+from core.report.losses import funnel, losses, missing_parts, support_counts
 from core.report.record import Document, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION

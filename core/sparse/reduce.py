@@ -1,7 +1,7 @@
 """The reducer's rule: which case wins, and why there may be none.
 
 Trust comes first: a case that a check vetoed loses against any that none did. Then the detections that its points
-verify count (`core.mapping.verified`; the final choice only), then the thesis's score (3.3.3).
+verify count (`core.mapping.support`; the final choice only), then the thesis's score (3.3.3).
 """
 
 from __future__ import annotations

@@ -9,8 +9,7 @@ from core.checks.model import is_wrong
 from core.checks.stats import model_stats
 from core.io.sparse import read_model, write_model
 from core.scene.case import StartMode
-from core.sparse.cases import Case
-from core.sparse.confirm import confirmed_or_searched
+from core.sparse.cases import Case, confirmed_or_searched
 from core.stage import StageResult, StageTask
 from core.viewgraph import read_graph
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shutil
 
-from core.dense.fusion import fuse
 from core.dense.maps import map_paths, open_scene
+from core.dense.workspace import fuse
 from core.io.surface import fused_cloud
 from core.stage import StageResult, StageTask
 

@@ -20,7 +20,7 @@ from core.io.sparse import read_poses
 from core.io.surface import defect_mesh
 from core.io.timeline import read_defects, read_events
 from core.render import Renderer
-from core.report.models import join_detections
+from core.report.load import join_detections
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
 from core.task_key import stage_of

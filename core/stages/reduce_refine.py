@@ -9,8 +9,7 @@ from dataclasses import replace
 from core.io.annotations import read_detections
 from core.io.frames import read_crop, read_frames
 from core.io.sparse import model_folder, read_model
-from core.mapping.support import boxes_by_frame
-from core.mapping.verified import verified_detections
+from core.mapping.support import boxes_by_frame, verified_detections
 from core.scene.case import CaseKind
 from core.sparse.reduce import Candidate, candidates_of, find_candidate, reduce_refined
 from core.stage import StageResult, StageTask

@@ -14,11 +14,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.annotations.advice import advice
 from core.annotations.checks import parse_time
 from core.annotations.clocks import CLOCKS, MEANINGS
 from core.annotations.convention import Fitted, fit_convention
 from core.annotations.reading import quantum
+from core.annotations.summary import advice
 from core.errors import BadInput
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from core.checks.extent import check_coverage, check_points, check_reprojection
 from core.checks.lens import check_lens, check_shift
+from core.checks.model import check_coverage, check_points, check_reprojection
 from core.flags import Flag
 from core.geometry.fisheye import fisheye_radius, viewing_angle
 

@@ -5,8 +5,7 @@ import pycolmap
 import pytest
 
 from core.geometry.boxes import Box
-from core.mapping.support import observations_of
-from core.mapping.verified import verified_detections
+from core.mapping.support import observations_of, verified_detections
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case
 from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph

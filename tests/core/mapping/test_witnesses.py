@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.mapping.casting import depth_agreement
 from core.mapping.confidence import Parts, confidence
 from core.mapping.depth_witness import no_depth_maps, seen_share
 from core.mapping.patches import split_patches
 from core.mapping.pixels import footprint
-from core.mapping.support_check import depth_agreement
 from core.mapping.surface import Surface
 from tests.core import making_plates as plates
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from core.report.build import build_report
-from core.report.missing import AFTER_MODEL
+from core.report.losses import AFTER_MODEL
 from core.report.record import RunRecord, TaskRecord
 from core.scene.detection import Outcome, Reason
 from core.states import RunState, TaskState

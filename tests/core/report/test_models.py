@@ -11,8 +11,7 @@ from core.flags import Verdict
 from core.io.annotations import write_rows
 from core.io.frames import write_registered
 from core.io.timeline import write_timeline
-from core.report.load import load_tables, served_pieces
-from core.report.models import join_detections
+from core.report.load import join_detections, load_tables, served_pieces
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows

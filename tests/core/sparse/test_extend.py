@@ -10,8 +10,7 @@ import pytest
 from core.checks.stats import ModelStats, model_stats
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
-from core.sparse.cases import Case
-from core.sparse.confirm import choose, confirmed_or_searched
+from core.sparse.cases import Case, choose, confirmed_or_searched
 from core.sparse.extend import register_rest
 from core.stage import Facts, StageTask
 from core.stages import confirm as confirm_stage

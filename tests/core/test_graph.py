@@ -38,6 +38,19 @@ def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: s
     assert keys(facts, preset) == keys(facts, preset)
 
 
+def test_chunks_cover_every_frame_and_view_once() -> None:
+    tasks = {task.key: task for task in expand(make_settings(options={"compute.chunk_views": 40}), DENSE)}
+    assert [dict(tasks[f"depth/{i:03d}"].args) for i in range(3)] == [
+        {"start": 0, "end": 40},
+        {"start": 40, "end": 80},
+        {"start": 80, "end": 90},
+    ]
+    assert "depth/003" not in tasks
+    frames = [dict(task.args) for key, task in tasks.items() if key.startswith("features/")]
+    assert [frames[0]["start"], frames[-1]["end"]] == [0, 200]
+    assert all(one["end"] == after["start"] for one, after in pairwise(frames))
+
+
 def test_the_plan_only_grows() -> None:
     known: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
     for before, after in pairwise(known):

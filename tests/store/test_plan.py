@@ -13,6 +13,7 @@ from sqlalchemy import delete, select, update
 
 from core.errors import BadInput, ResourceError, StageFailed
 from core.settings import make_settings
+from core.states import TaskState
 from store.db import Database
 from store.inspections import Inspections
 from store.leasing import put_result
@@ -127,6 +128,7 @@ def test_a_task_that_loses_its_worker_three_times_has_failed(plan: Plan) -> None
     assert plan.lease("me") is None
     view = inspections(plan).get(ID)
     assert (view.state, view.failed_stage, (view.error or {})["code"]) == ("failed", "split", "worker_lost")
+    assert (view.error or {})["retryable"] is False, "it has been tried three times"
 
 
 def test_retries_end_after_three_attempts_and_an_optional_task_is_then_done_without(plan: Plan) -> None:
@@ -194,6 +196,13 @@ def test_a_restarted_owner_takes_over_its_leases_at_once(plan: Plan) -> None:
     assert take(plan, "split").attempt == 1
 
 
+def test_a_server_that_starts_again_takes_over_its_own_leases_of_every_inspection(plan: Plan) -> None:
+    take(plan, "split", owner="server-a/1")
+    assert plan.take_over_all("server-b/") == 0
+    assert plan.take_over_all("server-a/") == 1
+    assert take(plan, "split", owner="server-b/1").owner == "server-b/1"
+
+
 def test_cancel_waits_for_running_tasks_and_starts_nothing(plan: Plan) -> None:
     finish(plan, "split")
     lease = take(plan, "part/0")
@@ -203,6 +212,10 @@ def test_cancel_waits_for_running_tasks_and_starts_nothing(plan: Plan) -> None:
     assert plan.release(lease)
     assert inspections(plan).get(ID).state == "cancelled"
     assert states(plan)["part/0"] == "cancelled"
+    with plan.db.read() as session:
+        tasks = session.scalars(select(Task).where(Task.state == TaskState.CANCELLED)).all()
+        assert len(tasks) > 1
+        assert all(task.ended_at is not None for task in tasks), "those that never began, too"
 
 
 def test_reopening_reuses_every_finished_result(plan: Plan) -> None:

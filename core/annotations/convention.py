@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from core.annotations.checks import shown
-from core.annotations.clocks import CLOCKS, FROM_ZERO, MEANINGS, Clock, clock_named, possible_clocks
+from core.annotations.clocks import CLOCKS, FRAME_NUMBERS, FROM_ZERO, MEANINGS, Clock, clock_named, possible_clocks
 from core.annotations.reading import Reading, read
 from core.errors import BadInput
 from core.flags import Flag, Severity
@@ -18,6 +18,8 @@ from core.video.table import FrameTable
 
 MAX_STRAYS = 0.02
 """Share of the keys that may miss every frame: files are edited by hand."""
+MIN_CONSECUTIVE = 10
+"""As many numbers from 1 on, without a gap, are no chance of which pictures had something on them."""
 MAX_SHARED = 0.1
 """More keys than this that share a frame with another one were not made on this video."""
 
@@ -93,6 +95,11 @@ def fit_convention(
         read(clock, keys, table) for clock in [clock_named(one) for one in among] or possible_clocks(keys, table)
     ]
     best = min(readings, key=_rank)
+    if tuple(among) == FRAME_NUMBERS and _count_from_one(keys):
+        from_one = next(one for one in readings if one.clock == "index+1")
+        if from_one.n_lost == best.n_lost:
+            rivals = () if from_one.frames == best.frames else (best,)
+            return _fitted(from_one, table, others=rivals, flags=_flags(from_one, rivals, doubtful=False))
     if len(best.strays) <= MAX_STRAYS * len(keys):
         others, doubtful = _others(best, readings, table)
         return _fitted(best, table, others=others, doubtful=doubtful, flags=_flags(best, others, doubtful))
@@ -102,6 +109,11 @@ def fit_convention(
         raise _unclear(best, len(keys), len(frames) - len(displayed.hit))
     flag = Flag("annotation_times_inexact", Severity.WARNING, float(best.max_miss), 0.0, f"{len(best.strays)} keys")
     return _fitted(displayed, table, flags=(flag,))
+
+
+def _count_from_one(keys: Mapping[str, Fraction]) -> bool:
+    """Whether the numbers of pictures are 1, 2, 3 and so on without a gap, as programs write them that count from 1."""
+    return len(keys) >= MIN_CONSECUTIVE and set(keys.values()) == set(range(1, len(keys) + 1))
 
 
 def _rank(one: Reading) -> tuple[int, int, bool, int]:

@@ -291,3 +291,27 @@ def test_every_clock_that_is_tried_can_be_told() -> None:
     names = get_args(InputSettings.model_fields["time_convention"].annotation)
     assert names == ("auto", *CLOCKS)
     assert set(MEANINGS) == set(CLOCKS)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "clock", "severity"),
+    [
+        (range(1, 21), "index+1", "info"),
+        (range(1, 51), "index+1", None),  # the last frame of the video: from 0 it would lie outside
+        (range(20), "index", None),
+        (range(1, 6), "index", "warning"),  # so few may be chance
+        ([*range(1, 15), 16], "index", "warning"),
+        (range(2, 22), "index", "warning"),
+    ],
+)
+def test_pictures_that_are_numbered_from_1_without_a_gap_count_from_1(
+    numbers: list[int], clock: str, severity: str | None
+) -> None:
+    keys = {str(number): Fraction(number) for number in numbers}
+    fitted = fit_convention(keys, table_of(EVEN), among=("index", "index+1"))
+    assert fitted.reading.clock == clock
+    first = next(iter(keys))
+    assert fitted.reading.frames[first] == int(first) - (clock == "index+1")
+    assert [flag.severity for flag in fitted.flags] == ([] if severity is None else [severity])
+    # Keys of our own form are times first; nothing changes for them.
+    assert fit([f"{number / 25:.2f}" for number in range(1, 21)], table_of(EVEN)).reading.clock == "pts"

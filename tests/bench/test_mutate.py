@@ -64,10 +64,13 @@ def test_lines_that_coverage_cannot_see_belong_to_every_test() -> None:
     assert reach.time_of(["tests/a.py::x"]) == 1.0
 
 
-@pytest.mark.parametrize("name", AREAS)
-def test_areas_name_what_is_there_and_draw_the_same_each_time(name: str) -> None:
-    area = AREAS[name]
-    assert all((ROOT / path).exists() for path in (*area.modules, *area.tests))
+def test_areas_name_what_is_there() -> None:
+    for area in AREAS.values():
+        assert all((ROOT / path).exists() for path in (*area.modules, *area.tests))
+
+
+def test_the_draw_is_the_same_each_time() -> None:
+    area = AREAS["scene"]
     drawn = draw(ROOT, area, 60, 0)
     assert len(set(drawn)) == 60
     assert drawn == draw(ROOT, area, 60, 0)

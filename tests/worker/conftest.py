@@ -22,6 +22,8 @@ class Workplace:
 
     root: Path
     events: list[Event] = field(default_factory=list)
+    seen: int = 0
+    """Lines of the journal that `started` has told of."""
 
     @property
     def video(self) -> Path:
@@ -43,8 +45,9 @@ class Workplace:
 
     def started(self) -> list[str]:
         """Keys of the tasks that began since the last call."""
-        lines = journal(self.video)
-        (self.video.parent / "journal.txt").unlink(missing_ok=True)
+        # The file stays: a stage may be about to write into the one that it has opened.
+        lines = journal(self.video)[self.seen :]
+        self.seen += len(lines)
         return sorted(line.removeprefix("start ") for line in lines if line.startswith("start "))
 
     def digests(self) -> dict[str, str]:

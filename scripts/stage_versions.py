@@ -15,6 +15,7 @@ import argparse
 import ast
 import hashlib
 import json
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -83,18 +84,18 @@ def modules_of(module: str) -> frozenset[str]:
         name = left.pop()
         if name not in found and name.startswith("core.") and not name.startswith(APART):
             found.add(name)
-            left += _imports(tree_of(name))
+            left += [other for other in imported_names(tree_of(name)) if _path(other) is not None]
     return frozenset(found)
 
 
-def _imports(tree: ast.Module) -> list[str]:
-    names: list[str] = []
+def imported_names(tree: ast.Module) -> Iterator[str]:
+    """Names that could be modules which a module imports, wherever in it."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            names += [one.name for one in node.names if _path(one.name) is not None]
-        elif isinstance(node, ast.ImportFrom) and node.module and _path(node.module) is not None:
-            names += [node.module, *(f"{node.module}.{one.name}" for one in node.names)]
-    return [name for name in names if _path(name) is not None]
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{name.name}" for name in node.names)
 
 
 def _path(module: str) -> Path | None:

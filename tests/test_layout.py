@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+
+from scripts.stage_versions import imported_names
 
 ROOT = Path(__file__).parents[1]
 AREAS = ("core", "store", "worker", "api", "cli", "bench")
 LEAST = 60
 MOST = 400
-READERS = Path(__file__).parents[1] / "core" / "annotations" / "foreign"
+READERS = ROOT / "core" / "annotations" / "foreign"
 """One module for each format, however short."""
 
 
@@ -27,21 +29,11 @@ def modules(root: Path) -> dict[str, Path]:
     return found
 
 
-def imported(tree: ast.Module) -> Iterator[str]:
-    """Names that could be modules which a module imports, wherever in it."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (name.name for name in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
-            yield from (f"{node.module}.{name.name}" for name in node.names)
-
-
 def importers(known: Mapping[str, Path]) -> dict[str, set[str]]:
     """Which modules import each; tests do not count."""
     found: dict[str, set[str]] = defaultdict(set)
     for name, path in known.items():
-        for other in imported(ast.parse(path.read_text(encoding="utf-8"))):
+        for other in imported_names(ast.parse(path.read_text(encoding="utf-8"))):
             if other in known and other != name:
                 found[other].add(name)
     return found

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from core.annotations import checks
 from core.annotations.form import DetectionForm, EntryForm, MaskForm, as_form
 from core.annotations.model import Annotations, Entry
-from core.geometry.boxes import Box, box_iou
+from core.geometry.boxes import Box, bounding_box, box_iou
 from core.scene.detection import Detection, Mask, Polygon
 
 MIN_MASK_IOU = 0.5
@@ -108,9 +108,3 @@ def has_area(polygon: Polygon) -> bool:
     ends = (*polygon[1:], *polygon[:1])
     doubled = sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in zip(polygon, ends, strict=True))
     return abs(doubled) > _NO_AREA
-
-
-def bounding_box(polygon: Polygon) -> Box:
-    """Smallest box around a polygon."""
-    xs, ys = [x for x, _ in polygon], [y for _, y in polygon]
-    return (min(xs), min(ys), max(xs), max(ys))

@@ -11,6 +11,12 @@ Box = tuple[float, float, float, float]
 """Left, upper, right, lower."""
 
 
+def bounding_box(corners: Sequence[tuple[float, float]]) -> Box:
+    """Smallest box around corners (x, y), of which there is at least one."""
+    xs, ys = [x for x, _ in corners], [y for _, y in corners]
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
 def box_iou(a: Sequence[float] | NDArray[np.float64], b: Sequence[float] | NDArray[np.float64]) -> float:
     """Intersection over union of two boxes, in [0, 1]; 0 when they only touch."""
     width = min(a[2], b[2]) - max(a[0], b[0])

@@ -47,11 +47,6 @@ def columns_of(declared: type[Any]) -> tuple[Column, ...]:
     return tuple(_column(field.name, kinds[field.name], meanings.get(field.name, "")) for field in fields(declared))
 
 
-def column_names(declared: type[Any]) -> tuple[str, ...]:
-    """Names of the columns, in their order."""
-    return tuple(field.name for field in fields(declared))
-
-
 def _column(name: str, kind: Any, meaning: str) -> Column:
     given = get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
     plain = {str if isinstance(one, type) and issubclass(one, StrEnum) else one for one in given if one is not NoneType}
@@ -61,12 +56,7 @@ def _column(name: str, kind: Any, meaning: str) -> Column:
 
 
 def _docstrings(declared: type[Any]) -> dict[str, str]:
-    """The texts below the fields of a class and of those that it extends."""
-    return {name: text for kind in reversed(declared.__mro__[:-1]) for name, text in _own_docstrings(kind).items()}
-
-
-def _own_docstrings(declared: type[Any]) -> dict[str, str]:
-    """The texts below the fields of a class; Python keeps none of them, so they are read from its source."""
+    """The texts below the fields of a class and of those that it extends, read from the source: Python keeps none."""
     found = {}
     for kind in reversed([one for one in declared.__mro__ if is_dataclass(one)]):
         (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body

@@ -5,15 +5,14 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
 import pytest
 
 from core.graph import STAGES
 from core.settings import Settings, declared_values, make_settings, only_declared
 from core.settings.base import Group, UndeclaredOption
+from scripts.stage_versions import modules_of, tree_of
 
-ROOT = Path(__file__).parents[2]
 GROUPS: dict[str, type[Group]] = {
     name: info.annotation
     for name, info in Settings.model_fields.items()
@@ -60,7 +59,7 @@ def test_a_stage_cannot_read_what_it_does_not_declare() -> None:
 def test_every_declared_option_is_read_by_the_stage_or_what_it_imports(stage: str) -> None:
     """Else a change of it would make the stage and everything after it again for nothing."""
     module = STAGES[stage].entry.partition(":")[0]
-    read = set().union(*(_options_read(name) for name in _imported(module)))
+    read = set().union(*(_options_read(name) for name in modules_of(module)))
     unread = [option for option in _single_options(STAGES[stage].settings) if option not in read]
     assert not unread
 
@@ -70,14 +69,14 @@ def test_what_a_stage_reads_itself_is_declared(stage: str) -> None:
     """Without running it: an option in a rare branch would end the stage only there."""
     declared = set(_single_options(STAGES[stage].settings))
     module = STAGES[stage].entry.partition(":")[0]
-    own = {module, "core.sparse.case_stage"} & _imported(module)
+    own = {module, "core.sparse.case_stage"} & modules_of(module)
     read = set().union(*(_options_read(name) for name in own))
     assert read <= declared
 
 
 def test_the_reading_check_sees_an_option_that_nobody_reads() -> None:
     module = STAGES["fuse"].entry.partition(":")[0]
-    read = set().union(*(_options_read(name) for name in _imported(module)))
+    read = set().union(*(_options_read(name) for name in modules_of(module)))
     assert "fusion.min_num_pixels" in read
     assert "mesh.poisson_trim" not in read
 
@@ -88,35 +87,6 @@ def _single_options(declared: tuple[str, ...]) -> Iterator[str]:
             yield from (f"{name}.{option}" for option in GROUPS[name].model_fields)
         else:
             yield name
-
-
-def _tree(module: str) -> ast.Module:
-    path = ROOT / Path(*module.split("."))
-    file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    return ast.parse(file.read_text(encoding="utf-8"))
-
-
-def _is_module(name: str) -> bool:
-    path = ROOT / Path(*name.split("."))
-    return path.is_dir() or path.with_suffix(".py").is_file()
-
-
-@cache
-def _imported(module: str) -> frozenset[str]:
-    """The module and all of core that it imports, anywhere in it, without the settings themselves."""
-    found, left = set(), [module]
-    while left:
-        name = left.pop()
-        if name in found or not name.startswith("core.") or name.startswith("core.settings"):
-            continue
-        found.add(name)
-        for node in ast.walk(_tree(name)):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                left.append(node.module)
-                left += [f"{node.module}.{one.name}" for one in node.names if _is_module(f"{node.module}.{one.name}")]
-            elif isinstance(node, ast.Import):
-                left += [one.name for one in node.names if _is_module(one.name)]
-    return frozenset(found)
 
 
 def _chain(node: ast.expr) -> list[str]:
@@ -137,7 +107,7 @@ def _group_of_chain(chain: list[str]) -> str | None:
 @cache
 def _options_read(module: str) -> frozenset[str]:
     """Options that a module reads, by the names under which it holds the settings and their groups."""
-    tree = _tree(module)
+    tree = tree_of(module)
     groups: dict[tuple[str, ...], set[str]] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.arg | ast.AnnAssign) and node.annotation is not None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 from core.annotations.checks import as_label, as_score, as_track_id, shown
-from core.annotations.foreign.sheet import Picture, Points, Shape, Sheet, Size
+from core.annotations.foreign.sheet import Picture, Shape, Sheet, Size
+from core.annotations.foreign.values import box_between
 from core.annotations.masks import BLADE_LABEL
 from core.annotations.model import Annotations, Entry
 from core.annotations.parse import has_area
@@ -109,7 +110,7 @@ def same_shape(one: Size, other: Size) -> bool:
 def _placed(shape: Shape, unit: Size, sheet: Sheet) -> tuple[Box, Polygon | None] | None:
     """Box and outline in shares; None for what encloses nothing of its picture."""
     corners = shape.outline if shape.outline is not None and len(shape.outline) >= 3 else None
-    box = shape.box if shape.box is not None else _around(corners or ())
+    box = shape.box if shape.box is not None else box_between(corners or ())
     if not shape.label.strip():
         sheet.drop("no label")
         return None
@@ -127,13 +128,6 @@ def _placed(shape: Shape, unit: Size, sheet: Sheet) -> tuple[Box, Polygon | None
         return cut, None
     polygon = tuple((_cut(x / unit[0]), _cut(y / unit[1])) for x, y in corners)
     return cut, polygon if has_area(polygon) else None
-
-
-def _around(corners: Points) -> Box | None:
-    if not corners:
-        return None
-    xs, ys = [x for x, _ in corners], [y for _, y in corners]
-    return (min(xs), min(ys), max(xs), max(ys))
 
 
 def _cut(value: float) -> float:

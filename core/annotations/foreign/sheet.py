@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from core.annotations.checks import shown
-from core.annotations.clocks import Clock
+from core.annotations.clocks import FRAME_NUMBERS, Clock
 from core.errors import BadInput
 from core.geometry.boxes import Box
 
@@ -28,8 +28,6 @@ MAX_PIXELS = 1 << 34
 MAX_NUMBER = 10**9
 """Largest frame number. No video has as many frames; longer numbers in names are times of day or identifiers."""
 
-COUNTED: tuple[Clock, ...] = ("index", "index+1")
-"""Frame numbers, from 0 or from 1: that is fitted."""
 FROM_ZERO: tuple[Clock, ...] = ("index",)
 FROM_ONE: tuple[Clock, ...] = ("index+1",)
 SECONDS: tuple[Clock, ...] = ("pts", "container")
@@ -83,7 +81,8 @@ class Sheet:
     def __init__(self, drops: Mapping[str, str]) -> None:
         """Start without pictures; `drops` says what of the format is not read, by kind."""
         self.pictures: dict[str, Picture] = {}
-        self.clocks: tuple[Clock, ...] = COUNTED
+        self.clocks: tuple[Clock, ...] = FRAME_NUMBERS
+        """By which the keys are read; of several, which one is fitted."""
         self.dropped: Counter[str] = Counter()
         self.counted_frames: int | None = None
         """Frames of the video as the tool counted them, where it says so."""

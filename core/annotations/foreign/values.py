@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from core.annotations.checks import as_list, as_number, as_object, invalid, shown
 from core.annotations.foreign.sheet import Points, Size
-from core.geometry.boxes import Box
+from core.geometry.boxes import Box, bounding_box
 from core.json_files import JsonObject
 
 
@@ -89,10 +89,7 @@ def points(value: object, where: str) -> Points:
 
 def box_between(corners: Points) -> Box | None:
     """The box around corners, in whatever order they are; None without any."""
-    if not corners:
-        return None
-    xs, ys = [x for x, _ in corners], [y for _, y in corners]
-    return (min(xs), min(ys), max(xs), max(ys))
+    return bounding_box(corners) if corners else None
 
 
 def corner_box(x: float, y: float, width: float, height: float) -> Box:

@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 
 from core.annotations.checks import as_box, as_polygon, as_share, as_track_id, parse_time, shown
-from core.annotations.parse import bounding_box
 from core.errors import BadInput
-from core.geometry.boxes import box_iou
+from core.geometry.boxes import bounding_box, box_iou
 
 
 @pytest.mark.parametrize(("value", "kept"), [("7", "7"), (7, 7), (None, None)])

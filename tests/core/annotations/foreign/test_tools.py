@@ -13,8 +13,7 @@ import pytest
 
 from core.annotations.load import load_annotations
 from core.annotations.model import Annotations
-from core.annotations.parse import bounding_box
-from core.geometry.boxes import Box
+from core.geometry.boxes import Box, bounding_box
 from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[4]

@@ -86,6 +86,9 @@ class Part:
     name: str
     path: Path
     limit: int
+    """Bytes that it and the parts of the same name before it may have together."""
+    before: int = 0
+    """Bytes of those."""
     size: int = 0
     _digest: _Hash = field(default_factory=hashlib.sha256)
     _buffer: bytearray = field(default_factory=bytearray)
@@ -98,8 +101,8 @@ class Part:
     def take(self, data: bytes) -> None:
         """Keep some bytes until `flush`; 413 above the limit."""
         self.size += len(data)
-        if self.size > self.limit:
-            detail = f"'{self.name}' may have at most {self.limit} bytes"
+        if self.before + self.size > self.limit:
+            detail = f"'{self.name}' may have at most {self.limit} bytes" + (" in all" if self.before else "")
             errors = [FieldError(pointer=f"/{self.name}", detail=detail)]
             status = HTTPStatus.REQUEST_ENTITY_TOO_LARGE
             raise Refused(status, "too_large", detail, where=self.name, errors=errors)
@@ -123,22 +126,28 @@ class Part:
 
 
 class FormReader:
-    """Reads one form; `parts` holds what came, by name. Call `discard` when it is no longer needed."""
+    """Reads one form; `parts` holds what came, in order. Call `discard` when it is no longer needed.
 
-    def __init__(self, services: Services, limits: Mapping[str, int]) -> None:
-        self.parts: dict[str, Part] = {}
-        self._services, self._limits = services, limits
+    Args:
+        services: where files are kept.
+        limits: bytes that the parts of each known name may have together.
+        repeated: how often a part may come; those that are not named once.
+    """
+
+    def __init__(self, services: Services, limits: Mapping[str, int], repeated: Mapping[str, int]) -> None:
+        self.parts: list[Part] = []
+        self._services, self._limits, self._repeated = services, limits, repeated
         self._current: Part | None = None
         self._header, self._value = b"", b""
         self._disposition = b""
         self._ended = False
 
-    async def read(self, headers: Mapping[str, str], owner: str, body: AsyncIterator[bytes]) -> dict[str, Part]:
+    async def read(self, headers: Mapping[str, str], owner: str, body: AsyncIterator[bytes]) -> None:
         """Take in the whole form; what its ``Content-Length`` promises counts against the disk meanwhile.
 
         Raises:
             Refused: 400 for what is no form or was cut off, 413 for a part above its limit, 422 for a part
-                that is not known or comes twice.
+                that is not known or comes too often.
             LimitReached, DiskFull: too many uploads are open, or there is no room for it.
         """
         parser = MultipartParser(_boundary(headers["content-type"]), callbacks=self._callbacks())
@@ -156,15 +165,18 @@ class FormReader:
             if not self._ended:
                 raise _malformed("the form was cut off before its end")
             await self._flush(0)
-        return self.parts
+
+    def named(self, name: str) -> list[Part]:
+        """What came under a name, in order."""
+        return [part for part in self.parts if part.name == name]
 
     def discard(self) -> None:
         """Remove every file that came; one that was stored elsewhere lives on there."""
-        for part in self.parts.values():
+        for part in self.parts:
             part.path.unlink(missing_ok=True)
 
     async def _flush(self, at_least: int) -> None:
-        for part in self.parts.values():
+        for part in self.parts:
             # A finished part is written at once, so that memory holds one piece whatever the parts are.
             await part.flush(at_least if part is self._current else 0)
 
@@ -197,14 +209,16 @@ class FormReader:
     def _headers_finished(self) -> None:
         _, options = parse_options_header(self._disposition)
         name = options.get(b"name", b"").decode("utf-8", "replace")
-        if name not in self._limits or name in self.parts:
-            twice = f"the part '{name}' comes twice"
-            detail = twice if name in self.parts else unknown_name("part", name[:64], self._limits)
+        there, most = self.named(name), self._repeated.get(name, 1)
+        if name not in self._limits or len(there) >= most:
+            often = f"the part '{name}' comes " + ("twice" if most == 1 else f"more than {most} times")
+            detail = often if there else unknown_name("part", name[:64], self._limits)
             errors = [FieldError(pointer=f"/{name[:64]}", detail=detail)]
             raise Refused(HTTPStatus.UNPROCESSABLE_ENTITY, "bad_part", detail, where=name[:64], errors=errors)
-        part = Part(name, self._services.uploads.part(), self._limits[name])
+        part = Part(name, self._services.uploads.part(), self._limits[name], sum(one.size for one in there))
         part.path.touch(mode=0o600)
-        self._current = self.parts[name] = part
+        self.parts.append(part)
+        self._current = part
 
     def _data(self, data: bytes, start: int, end: int) -> None:
         assert self._current is not None  # the parser tells the headers first

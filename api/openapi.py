@@ -9,9 +9,9 @@ from fastapi.openapi.utils import get_openapi
 
 from api.problems import MEDIA_TYPE
 from api.schemas import Parameters
-from api.submit import CreateBody
+from api.sending import CreateBody, Recorded
 
-_BODIES = (Parameters, CreateBody)
+_BODIES = (Parameters, Recorded, CreateBody)
 """Bodies that routes read by themselves, so that FastAPI does not know them."""
 _REFERENCE = "#/components/schemas/{model}"
 

@@ -7,8 +7,8 @@ import json
 import os
 import signal
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 from api.turns import Turns
@@ -16,6 +16,7 @@ from core.child_environment import child_environment
 from core.errors import BadInput, ResourceError, error_from_dict
 from core.settings import Settings
 from core.video.limits import VideoLimits
+from core.videos import Recording
 from store.settings import DeploymentSettings
 
 _ENTRY = "core.intake"
@@ -42,7 +43,7 @@ class Prober:
             settings.probe_wait_seconds,
         )
 
-    async def check(self, owner: str, video: Path, annotations: Path | None, settings: Settings) -> None:
+    async def check(self, owner: str, recordings: Sequence[Recording], settings: Settings) -> None:
         """Return when the input can be used.
 
         Raises:
@@ -51,8 +52,7 @@ class Prober:
             Refused: 429 or 503, too many wait already, or no turn came in time.
         """
         question = {
-            "video": str(video),
-            "annotations": str(annotations) if annotations else None,
+            "recordings": [one.to_dict() for one in recordings],
             "annotation_format": settings.input.annotation_format,
             "video_stream": settings.input.video_stream,
             "fps": settings.input.fps,

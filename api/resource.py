@@ -18,6 +18,7 @@ from core.fingerprint import digest_of
 from core.flags import Severity
 from core.states import InspectionState
 from core.versions import all_versions
+from store.leasing import input_files
 from store.models import LEASABLE, Inspection
 from store.publishing import ArtifactRows
 from store.status import PUBLISH, InspectionStatus, StageStatus, Statuses
@@ -104,6 +105,10 @@ class Resources:
                 "warnings": [] if status.active else published.warnings,
                 "error": None if status.active or not row.error else job_problem(row.error, row.failed_stage),
                 "input_sha256": {"video": row.video_sha256, "annotations": row.annotations_sha256},
+                "videos": [
+                    {"video": number, "sha256": one.video_sha256, "annotations_sha256": one.annotations_sha256}
+                    for number, one in enumerate(input_files(row))
+                ],
                 "params_digest": digest_of(row.settings),
                 "versions": published.versions,
                 "links": _links(row.id),

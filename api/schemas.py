@@ -17,6 +17,11 @@ State = Annotated[str, OneOf(InspectionState)]
 EXAMPLE_ID = "0b6f1e0c3f7d4f0f9a52f7f4f1f0a6c1"
 _SHA = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
 
+PARAMETERS_EXAMPLE: dict[str, Any] = {
+    "preset": "draft",
+    "options": {"matching.window": 8},
+    "label": "engine 4, stage 2",
+}
 EXAMPLE_STAGE: dict[str, Any] = {
     "name": "coarse",
     "state": StageState.RUNNING,
@@ -47,6 +52,7 @@ EXAMPLE: dict[str, Any] = {
     "warnings": [],
     "error": None,
     "input_sha256": {"video": _SHA, "annotations": None},
+    "videos": [{"video": 0, "sha256": _SHA, "annotations_sha256": None}],
     "params_digest": _SHA,
     "versions": {"bladeatlas": "0.1.0"},
     "links": {"self": f"/v1/inspections/{EXAMPLE_ID}"},
@@ -99,14 +105,22 @@ class JobProblem(BaseModel):
 
 
 class InputSha256(BaseModel):
-    """Content of the input."""
+    """Content of the input; of several videos the first, `videos` has all."""
 
     video: str
     annotations: str | None
 
 
+class InputVideo(BaseModel):
+    """A video of an inspection."""
+
+    video: int = Field(ge=0, description="its number in the tables, from 0 in the order given")
+    sha256: str
+    annotations_sha256: str | None = Field(description="null for a video without annotations")
+
+
 class Resource(BaseModel):
-    """An inspection: one video, its annotations, its parameters, its result."""
+    """An inspection: its videos, their annotations, its parameters, its result."""
 
     model_config = ConfigDict(json_schema_extra={"example": EXAMPLE})
 
@@ -130,6 +144,7 @@ class Resource(BaseModel):
     warnings: list[Warned]
     error: JobProblem | None
     input_sha256: InputSha256
+    videos: list[InputVideo]
     params_digest: str = Field(description="SHA-256 of all options as used")
     versions: dict[str, str] = Field(description="programs that made the result")
     links: dict[str, str] = Field(description="paths of everything that belongs to it")

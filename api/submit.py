@@ -1,4 +1,4 @@
-"""Submission: from a form or from JSON that names finished uploads to an inspection.
+"""Submission: from what a request sent (`api.sending`) to an inspection.
 
 The request is checked, its files are stored by content, and the inspection is written in one transaction and told of.
 """
@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import json
 import uuid
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from http import HTTPStatus
@@ -16,54 +16,22 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import Request
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ValidationError
 from sqlalchemy.exc import IntegrityError
 from starlette.concurrency import run_in_threadpool
 
-from api.finding import is_id
-from api.forms import FormReader, Part
 from api.limits import require_space
 from api.problems import FieldError, Refused, field_errors, pointer
-from api.receiving import body_of, on_disk, while_there
-from api.schemas import EXAMPLE_ID, Parameters
+from api.receiving import on_disk, while_there
+from api.schemas import Parameters
 from api.services import Services
 from api.state import State
 from core.errors import BadInput
-from core.fingerprint import digest_of, digest_of_file
+from core.fingerprint import digest_of
 from core.settings import Settings, make_settings
+from core.videos import Recording
 from store.admission import IdempotencyKeys, Place
 from store.records import InputFiles
-
-MAX_PARAMETERS_BYTES = 1 << 20
-MAX_INLINE_BYTES = 8 << 20
-"""Largest JSON body. Annotations that are larger come as an upload or in a form: parsed JSON takes much memory."""
-_PARAMETERS_EXAMPLE: dict[str, Any] = {
-    "preset": "draft",
-    "options": {"matching.window": 8},
-    "label": "engine 4, stage 2",
-}
-_BINARY = {"type": "string", "format": "binary"}
-CREATE_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["video"],
-                    "additionalProperties": False,
-                    "properties": {
-                        "video": {**_BINARY, "description": "the video; its content decides, not its declared type"},
-                        "annotations": {**_BINARY, "description": "any file of docs/annotations.md; told by content"},
-                        "parameters": {"$ref": "#/components/schemas/Parameters"},
-                    },
-                }
-            },
-            "application/json": {"schema": {"$ref": "#/components/schemas/CreateBody"}},
-        },
-    }
-}
-"""OpenAPI's description of both."""
 
 
 @dataclass(frozen=True)
@@ -75,24 +43,36 @@ class LocalFile:
 
 
 @dataclass(frozen=True)
+class Sent:
+    """A video that came with a request, and its annotations."""
+
+    video: LocalFile
+    annotations: LocalFile | None
+
+    @property
+    def recording(self) -> Recording:
+        """Where they lie."""
+        return Recording(self.video.path, self.annotations.path if self.annotations else None)
+
+    def names(self) -> dict[str, str | None]:
+        """Both by content."""
+        return {"video": self.video.sha256, "annotations": self.annotations.sha256 if self.annotations else None}
+
+
+@dataclass(frozen=True)
 class Asked:
     """What a request asks for."""
 
     owner: str
-    video: LocalFile
-    annotations: LocalFile | None
+    sent: tuple[Sent, ...]
+    """Its videos in order."""
     parameters: Parameters
     idempotency_key: str | None
 
     def digest(self) -> str:
         """Name of the request by content, however it was sent."""
-        return digest_of(
-            {
-                "video": self.video.sha256,
-                "annotations": self.annotations.sha256 if self.annotations else None,
-                "parameters": self.parameters.model_dump(mode="json"),
-            }
-        )
+        names = self.sent[0].names() if len(self.sent) == 1 else {"videos": [one.names() for one in self.sent]}
+        return digest_of({**names, "parameters": self.parameters.model_dump(mode="json")})
 
 
 async def accept(state: State, asked: Asked, request: Request) -> str:
@@ -111,8 +91,8 @@ async def accept(state: State, asked: Asked, request: Request) -> str:
             return known
         await run_in_threadpool(state.services.admission.look, asked.owner)
         require_space(state.services)
-        annotations = asked.annotations.path if asked.annotations else None
-        await while_there(request, state.prober.check(asked.owner, asked.video.path, annotations, settings))
+        recordings = [one.recording for one in asked.sent]
+        await while_there(request, state.prober.check(asked.owner, recordings, settings))
         return await on_disk(partial(_create, state.services, asked, settings))
 
 
@@ -227,8 +207,11 @@ def _create_in(services: Services, asked: Asked, settings: Settings, place: Plac
     return inspection_id
 
 
-def _store_inputs(services: Services, asked: Asked) -> InputFiles:
-    video, annotations = asked.video, asked.annotations
+def _store_inputs(services: Services, asked: Asked) -> list[InputFiles]:
+    return [_store(services, one.video, one.annotations) for one in asked.sent]
+
+
+def _store(services: Services, video: LocalFile, annotations: LocalFile | None) -> InputFiles:
     key = f"inputs/{video.sha256}/video"
     _adopt(services, key, video.path)
     if annotations is None:
@@ -241,102 +224,3 @@ def _store_inputs(services: Services, asked: Asked) -> InputFiles:
 def _adopt(services: Services, key: str, path: Path) -> None:
     if not services.artifacts.exists(key):
         services.artifacts.adopt(key, path)
-
-
-class CreateBody(BaseModel):
-    """An inspection of uploads that are finished."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={"example": {"video_upload": EXAMPLE_ID, "parameters": _PARAMETERS_EXAMPLE}},
-    )
-
-    video_upload: str = Field(description="id of the video's upload")
-    annotations_upload: str | None = Field(None, description="id of the annotations' upload")
-    annotations: dict[str, Any] | list[Any] | None = Field(
-        None, description="the annotations themselves, in any JSON form that is read, up to 8 MiB"
-    )
-    parameters: Parameters = Parameters()
-
-
-@asynccontextmanager
-async def asked_by_form(request: Request, services: Services, owner: str, key: str | None) -> AsyncIterator[Asked]:
-    """Read a form to disk; its files live as long as the request."""
-    settings = services.settings
-    limits = {
-        "video": settings.max_upload_bytes,
-        "annotations": settings.max_annotations_bytes,
-        "parameters": MAX_PARAMETERS_BYTES,
-    }
-    # Refused before the body is read: a client that asked with `Expect: 100-continue` need not send it.
-    await run_in_threadpool(services.admission.look, owner)
-    form = FormReader(services, limits)
-    try:
-        parts = await form.read(request.headers, owner, body_of(request))
-        if "video" not in parts:
-            raise invalid([FieldError(pointer="/video", detail="the part 'video' is missing")])
-        parameters = parse_parameters(parts["parameters"].path.read_bytes()) if "parameters" in parts else Parameters()
-        annotations = _file(parts["annotations"]) if "annotations" in parts else None
-        yield Asked(owner, _file(parts["video"]), annotations, parameters, key)
-    finally:
-        form.discard()
-
-
-def _file(part: Part) -> LocalFile:
-    return LocalFile(part.path, part.sha256)
-
-
-@asynccontextmanager
-async def asked_by_json(request: Request, services: Services, owner: str, key: str | None) -> AsyncIterator[Asked]:
-    """Find the uploads that a JSON body names."""
-    data = bytearray()
-    async for chunk in body_of(request):
-        data += chunk
-        if len(data) > MAX_INLINE_BYTES:
-            detail = f"a JSON body may have {MAX_INLINE_BYTES} bytes; send larger annotations as an upload"
-            raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "too_large", detail, where="body")
-    body = await run_in_threadpool(_parse_body, bytes(data))
-    video = await on_disk(partial(_upload, services, owner, body.video_upload, "video_upload"))
-    inline = services.uploads.part()
-    try:
-        annotations = await on_disk(partial(_annotations, services, owner, body, inline))
-        yield Asked(owner, video, annotations, body.parameters, key)
-    finally:
-        inline.unlink(missing_ok=True)
-
-
-def _parse_body(data: bytes) -> CreateBody:
-    value = parse_json(data, "body")
-    try:
-        body = CreateBody.model_validate(value)
-    except ValidationError as error:
-        raise invalid(field_errors(error.errors())) from None
-    if body.annotations is not None and body.annotations_upload is not None:
-        detail = "either annotations or annotations_upload"
-        raise invalid([FieldError(pointer="/annotations_upload", detail=detail)])
-    return body
-
-
-def _upload(services: Services, owner: str, upload_id: str, field: str) -> LocalFile:
-    """A finished upload of this owner; its hash is known, or made here once."""
-    upload = services.uploads.find(upload_id, owner) if is_id(upload_id) else None
-    if upload is None or upload.removed:
-        raise invalid([FieldError(pointer=f"/{field}", detail="there is no such upload")])
-    if not upload.complete:
-        detail = f"the upload is not finished: {upload.offset} of {upload.length} bytes"
-        raise invalid([FieldError(pointer=f"/{field}", detail=detail)])
-    path = services.uploads.path(upload.id)
-    digest = upload.sha256
-    if digest is None:
-        digest = digest_of_file(path)
-        services.uploads.commit(upload.id, upload.offset, digest)
-    return LocalFile(path, digest)
-
-
-def _annotations(services: Services, owner: str, body: CreateBody, inline: Path) -> LocalFile | None:
-    if body.annotations_upload is not None:
-        return _upload(services, owner, body.annotations_upload, "annotations_upload")
-    if body.annotations is None:
-        return None
-    inline.write_text(json.dumps(body.annotations, ensure_ascii=False), encoding="utf-8")
-    return LocalFile(inline, digest_of_file(inline))

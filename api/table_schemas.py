@@ -57,7 +57,7 @@ Detection = _row_model(
         **{"box_x1": 0.41, "box_y1": 0.38, "box_x2": 0.47, "box_y2": 0.44},
         **{"frame_index": 125, "outcome": "mapped", "reason": None, "rung": "sparse", "support_points": 14},
         **{"x": 0.12, "y": -0.4, "z": 2.31},
-        **{"confidence": None, "blade": None, "defect_id": 3, "model": 0},
+        **{"confidence": None, "blade": None, "defect_id": 3, "model": 0, "video": 0},
     },
 )
 Event = _row_model(
@@ -68,7 +68,7 @@ Event = _row_model(
     {
         **{"event_id": 0, "defect_id": 3, "label": "dent", "start_s": 12.1, "end_s": 13.4},
         **{"n_detections": 9, "n_frames": 9, "x": 0.12, "y": -0.4, "z": 2.31},
-        **{"radius": 0.03, "confidence": None},
+        **{"radius": 0.03, "confidence": None, "video": 0},
     },
 )
 

@@ -25,16 +25,6 @@ def annotation_file(path: Path) -> Iterator[Path]:
         yield packed
 
 
-@contextmanager
-def optional_annotation_file(path: Path | None) -> Iterator[Path | None]:
-    """The same where annotations may be missing."""
-    if path is None:
-        yield None
-        return
-    with annotation_file(path) as file:
-        yield file
-
-
 def with_format(parsed: argparse.Namespace) -> list[str]:
     """The options ``NAME=VALUE`` of a command, with what `--format` says as one of them."""
     return [*parsed.assignments, *([] if parsed.format is None else [f"{OPTION}={parsed.format}"])]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from cli.annotation_file import add_format
+from cli.recordings import add_recordings
 from cli.remote_arguments import add_remote_commands
 from cli.terminal import say
 from core.settings import PRESET_NAMES
@@ -64,13 +65,18 @@ def parser() -> argparse.ArgumentParser:
     _run(commands)
     _serve(commands)
     probe = _add(commands, "probe", "say what a video is: size, frames, times, damage")
-    probe.add_argument("video", type=Path, metavar="VIDEO")
+    probe.add_argument("videos", type=Path, nargs="+", metavar="VIDEO")
     probe.add_argument("--stream", type=int, metavar="N", help="of several video streams; as input.video_stream")
     _fps(probe)
     _json(probe)
     check = _add(commands, "check", "say what was understood of an annotation file")
-    check.add_argument("annotations", type=Path, metavar="ANNOTATIONS")
-    check.add_argument("video", type=Path, nargs="?", metavar="VIDEO", help="match the times with this video's frames")
+    check.add_argument(
+        "files",
+        type=Path,
+        nargs="+",
+        metavar="ANNOTATIONS [VIDEO]",
+        help="an annotation file, and the video with whose frames its times are matched; or several such pairs",
+    )
     _fps(check)
     add_format(check)
     _set(check, "set one option of the input (repeatable), e.g. input.time_convention=index to try a reading")
@@ -108,12 +114,14 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     point = _add(commands, "point", "say which point of the surface a pixel of a frame shows")
     point.add_argument("--frame", type=int, metavar="N", help="frame of the video, from 0")
     point.add_argument("--time", type=float, metavar="SECONDS", help="or the used frame nearest to this time")
+    point.add_argument("--video", type=int, default=0, metavar="N", help="of several videos, from 0 (0)")
     point.add_argument(
         "--pixel", required=True, metavar="X,Y", help="pixels from the upper left corner of the whole frame"
     )
     views = _add(commands, "views", "list the frames that see a point of the surface, best first")
     views.add_argument("--point", metavar="X,Y,Z", help="in model units")
     views.add_argument("--defect", metavar="ID", help="or the place of a defect: D1, or 1")
+    views.add_argument("--video", type=int, metavar="N", help="of several videos, only frames of this one, from 0")
     views.add_argument("--limit", type=int, default=20, metavar="N", help="frames listed, at most (20)")
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
@@ -122,13 +130,8 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    run = _add(commands, "run", "inspect: video and annotations in, result folder out", epilog=_EXIT_CODES)
-    run.add_argument(
-        "video", type=Path, metavar="VIDEO", help="file, folder or zip of pictures, pattern as f/%%04d.jpg"
-    )
-    run.add_argument(
-        "annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="file or folder; see docs/annotations.md"
-    )
+    run = _add(commands, "run", "inspect: videos and their annotations in, result folder out", epilog=_EXIT_CODES)
+    add_recordings(run)
     add_format(run)
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)

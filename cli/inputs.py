@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -27,19 +28,26 @@ from core.video.table import RATE_FROM, FrameTable, VideoInfo, colon_text, liste
 def probe(parsed: argparse.Namespace) -> int:
     """Decode the whole video once and say what it holds; a damaged video is described, not refused."""
     fps = make_settings("default", {"input.fps": parsed.fps}).input.fps
-    table = probe_video(parsed.video, allow_truncated=True, stream=parsed.stream, fps=fps)
+    found = []
+    for video in parsed.videos:
+        table = probe_video(video, allow_truncated=True, stream=parsed.stream, fps=fps)
+        found.append({**table.info.to_dict(), **_gaps(table)})
+        if not parsed.json:
+            _say_video(video.name, table)
     if parsed.json:
-        say_json({"schema_version": 1, **table.info.to_dict(), **_gaps(table)}, indent=1)
-        return 0
+        say_json({"schema_version": 1, **(found[0] if len(found) == 1 else {"videos": found})}, indent=1)
+    return 0
+
+
+def _say_video(name: str, table: FrameTable) -> None:
     info, gaps = table.info, _gaps(table)
     steps = f"{gaps['min_step_s']:.4f} to {gaps['max_step_s']:.4f} s"
     say(
-        f"{parsed.video.name}: {info.width}x{info.height}, {info.codec}, {info.n_frames} frames",
+        f"{name}: {info.width}x{info.height}, {info.codec}, {info.n_frames} frames",
         f"  duration {duration(info.duration_s)}, {float(info.average_rate):.4g} frames/s on average",
         f"  time between frames {steps}, {'variable' if gaps['variable_rate'] else 'constant'} rate",
         *(f"  {note}" for note in notes(info)),
     )
-    return 0
 
 
 def notes(info: VideoInfo) -> list[str]:
@@ -80,18 +88,33 @@ def _gaps(table: FrameTable) -> dict[str, float | bool]:
 def check(parsed: argparse.Namespace) -> int:
     """Read annotations, match them with the video's frames when one is given, and say what they hold."""
     options = input_options(with_format(parsed), parsed.fps)
-    annotations, table = read_with_video(parsed.annotations, parsed.video, options)
-    placed = None if table is None else place(annotations, table, options.time_convention)
-    video = None if table is None else table.info
-    summary = summarise(annotations, placed)
+    found = []
+    for file, video in _pairs(parsed.files):
+        annotations, table = read_with_video(file, video, options)
+        info = None if table is None else table.info
+        summary = summarise(annotations, None if table is None else place(annotations, table, options.time_convention))
+        found.append({**summary.to_dict(), "video": None if info is None else info.to_dict()})
+        if not parsed.json:
+            _say_annotations(file.name, summary, info)
     if parsed.json:
-        found = {**summary.to_dict(), "video": None if video is None else video.to_dict()}
-        say_json({"schema_version": 1, **found}, indent=1)
-        return 0
-    times = f"{summary.n_keys_with_detections} of {summary.n_keys} times"
-    say(f"{parsed.annotations.name}: {summary.n_detections} detections at {times}", *lines(summary))
-    say(*(f"  video: {note}" for note in (() if video is None else notes(video))))
+        say_json({"schema_version": 1, **(found[0] if len(found) == 1 else {"annotations": found})}, indent=1)
     return 0
+
+
+def _pairs(files: Sequence[Path]) -> list[tuple[Path, Path | None]]:
+    """Annotation files with the video that each is of; `BadInput` when the last of several has none."""
+    if len(files) == 1:
+        return [(files[0], None)]
+    if len(files) % 2:
+        message = f"{len(files)} files are no pairs of annotations and video: write ANNOTATIONS VIDEO for each"
+        raise BadInput(message, code="annotations_count", where="ANNOTATIONS")
+    return list(zip(files[::2], files[1::2], strict=True))
+
+
+def _say_annotations(name: str, summary: AnnotationSummary, video: VideoInfo | None) -> None:
+    times = f"{summary.n_keys_with_detections} of {summary.n_keys} times"
+    say(f"{name}: {summary.n_detections} detections at {times}", *lines(summary))
+    say(*(f"  video: {note}" for note in (() if video is None else notes(video))))
 
 
 def input_options(assignments: list[str], fps: float | None = None) -> InputSettings:

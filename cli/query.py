@@ -26,15 +26,16 @@ def point(parsed: argparse.Namespace) -> int:
         raise BadInput("say which frame: --frame N (of the video, from 0) or --time SECONDS, not both", where="--frame")
     x, y = numbers(parsed.pixel, 2, "--pixel")
     result = Result(parsed.result, parsed.model or 0)
-    frame = result.frame_at(parsed.time) if parsed.frame is None else parsed.frame
-    shown = result.point_at(frame, x, y)
+    frame = result.frame_at(parsed.time, parsed.video) if parsed.frame is None else parsed.frame
+    shown = result.point_at(frame, x, y, parsed.video)
+    which = f"video {parsed.video}, frame {frame}" if result.n_videos > 1 else f"frame {frame}"
     if parsed.json:
-        say_json({"schema_version": 1, "source_index": frame, **shown.to_dict()}, indent=1)
+        say_json({"schema_version": 1, "video": parsed.video, "source_index": frame, **shown.to_dict()}, indent=1)
     elif shown.point is None:
-        say(f"frame {frame} shows nothing there: {REASONS[Reason(str(shown.reason))]}")
+        say(f"{which} shows nothing there: {REASONS[Reason(str(shown.reason))]}")
     else:
         say(
-            f"frame {frame} at {shown.time_s:.3f} s, pixel {x:g}, {y:g}",
+            f"{which} at {shown.time_s:.3f} s, pixel {x:g}, {y:g}",
             f"  point      {three(shown.point)}  (model units)",
             f"  normal     {three(shown.normal or (0.0, 0.0, 0.0))}",
             f"  distance   {shown.distance:.4f}, seen at {shown.incidence_deg:.0f} degrees",
@@ -73,7 +74,7 @@ def views(parsed: argparse.Namespace) -> int:
     place, model = _place(parsed.result, parsed.point, parsed.defect, parsed.model)
     result = Result(parsed.result, model)
     on = result.on_surface(place)
-    seeing = result.frames_seeing(place)
+    seeing = result.frames_seeing(place, parsed.video)
     shown = seeing[: parsed.limit]
     if parsed.json:
         rows = [one.to_dict() for one in shown]
@@ -85,7 +86,8 @@ def views(parsed: argparse.Namespace) -> int:
     say(f"{len(seeing)} frames see it" + (f"; the best {len(shown)}:" if len(shown) < len(seeing) else ""))
     for one in shown:
         at = f"at {one.x:7.1f}, {one.y:7.1f} px"
-        say(f"  frame {one.source_index:6d}  {one.time_s:9.3f} s  {at}  quality {one.quality:.2f}")
+        which = f"video {one.video}  " if result.n_videos > 1 else ""
+        say(f"  {which}frame {one.source_index:6d}  {one.time_s:9.3f} s  {at}  quality {one.quality:.2f}")
     return 0
 
 

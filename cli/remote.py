@@ -14,12 +14,13 @@ from rich.markup import escape
 from rich.progress import BarColumn, DownloadColumn, Progress, TaskID, TextColumn, TransferSpeedColumn
 
 from cli import exits
-from cli.annotation_file import optional_annotation_file, with_format
+from cli.annotation_file import with_format
 from cli.client import Client, InspectionInfo
 from cli.client.client import chosen
 from cli.client.transfers import no_progress
 from cli.parameters import Parameters, parse_assignment, read_parameters
 from cli.progress import duration
+from cli.recordings import recordings_of
 from cli.terminal import console, say, say_json, visible
 from core.errors import BadInput
 from core.states import InspectionState
@@ -35,8 +36,11 @@ def submit(parsed: argparse.Namespace) -> int:
     with client_of(parsed) as client:
         with byte_bars() as bars:
             on_bytes = bars.show if bars is not None else no_progress
-            with optional_annotation_file(parsed.annotations) as annotations:
-                inspection = client.submit(parsed.video, annotations, parameters, on_bytes=on_bytes)
+            with recordings_of(parsed) as recordings:
+                first, *further = recordings
+                inspection = client.submit(
+                    first.video, first.annotations, parameters, further=further, on_bytes=on_bytes
+                )
         if parsed.json:
             say_json(inspection.raw)
         else:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from cli.annotation_file import add_format
+from cli.recordings import add_recordings
 from core.settings import PRESET_NAMES
 
 Commands = argparse._SubParsersAction  # argparse has no public name for it
@@ -14,7 +15,7 @@ _KEY = "API key: from --key-file, or the variable of --key-env (BLADEATLAS_API_K
 
 def add_remote_commands(commands: Commands[argparse.ArgumentParser], exit_codes: str) -> None:
     """Register submit, status, watch, download, cancel and keys."""
-    _submit(_add(commands, "submit", "send a video and annotations to a server and start an inspection", exit_codes))
+    _submit(_add(commands, "submit", "send videos and annotations to a server and start an inspection", exit_codes))
     status = _add(commands, "status", "say how an inspection stands, or list the latest")
     status.add_argument("id", nargs="?", metavar="ID")
     status.add_argument("--state", metavar="STATE", help="list only these")
@@ -32,10 +33,7 @@ def add_remote_commands(commands: Commands[argparse.ArgumentParser], exit_codes:
 
 
 def _submit(submit: argparse.ArgumentParser) -> None:
-    submit.add_argument("video", type=Path, metavar="VIDEO")
-    submit.add_argument(
-        "annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="file or folder; see docs/annotations.md"
-    )
+    add_recordings(submit)
     add_format(submit)
     submit.add_argument("--preset", metavar="|".join(PRESET_NAMES), help="where the values start")
     submit.add_argument(

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 from cli import exits, parameters, progress, report
-from cli.annotation_file import optional_annotation_file
+from cli.recordings import recordings_of
 from cli.terminal import say
 from core.errors import BadInput
 from core.graph import STAGES
 from core.intake import check_input
 from core.settings import Settings
 from core.states import RunState
+from core.videos import Recording
 from worker.events import Outcome
 from worker.local_run import Names, run_inspection
 
@@ -27,9 +28,9 @@ def command(parsed: argparse.Namespace) -> int:
     if parsed.from_stage is not None and parsed.from_stage not in STAGES:
         raise BadInput(f"unknown stage '{parsed.from_stage}'; known: {', '.join(STAGES)}", where="--from")
     display = progress.choose(parsed.json)
-    with optional_annotation_file(parsed.annotations) as annotations:
-        check_input(parsed.video, annotations, settings)
-        outcome = _run(parsed, annotations, wanted, settings, display)
+    with recordings_of(parsed) as recordings:
+        check_input(recordings, settings)
+        outcome = _run(parsed, recordings, wanted, settings, display)
     code = _code(outcome)
     if isinstance(display, progress.JsonDisplay):
         labels = {"label": wanted.label, "external_id": wanted.external_id}
@@ -45,15 +46,14 @@ def command(parsed: argparse.Namespace) -> int:
 
 def _run(
     parsed: argparse.Namespace,
-    annotations: Path | None,
+    recordings: Sequence[Recording],
     wanted: parameters.Parameters,
     settings: Settings,
     display: progress.Display,
 ) -> Outcome:
     with display:
         return run_inspection(
-            parsed.video,
-            annotations,
+            recordings,
             parsed.out,
             settings,
             workers=parsed.workers,

@@ -14,11 +14,12 @@ import os
 import resource
 import signal
 import sys
+from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
 from typing import NotRequired, TypedDict
 
-from core.annotations.foreign.unreadable import looks_like_video
+from core.annotations.foreign.unreadable import is_video_file
 from core.annotations.load import load_annotations
 from core.errors import BadInput, BladeAtlasError
 from core.roi import crop_of
@@ -29,6 +30,7 @@ from core.video.limits import PIXELS_ONLY, VideoLimits
 from core.video.opening import open_video
 from core.video.orientation import square_width
 from core.video.picture_reader import PictureReader
+from core.videos import Recording, RecordingFields, naming_video, require_count, require_one_size
 
 _PR_SET_PDEATHSIG = 1
 
@@ -44,8 +46,7 @@ class LimitFields(TypedDict, total=False):
 class Question(TypedDict):
     """What `answer` is asked; paths as text."""
 
-    video: str
-    annotations: NotRequired[str | None]
+    recordings: list[RecordingFields]
     video_stream: NotRequired[int | None]
     fps: NotRequired[float | None]
     annotation_format: NotRequired[str]
@@ -57,7 +58,7 @@ class Question(TypedDict):
 class Answer(TypedDict, total=False):
     """What `answer` says: `error` alone, or the others."""
 
-    video: VideoSize
+    videos: list[VideoSize]
     n_detections: int
     error: dict[str, object]
     """`BladeAtlasError.to_dict`."""
@@ -70,46 +71,68 @@ class VideoSize(TypedDict):
     height: int
     codec: str
     declared_frames: int
+    declared_s: float
+    """0 where the header does not say."""
 
 
-def check_input(video: Path, annotations: Path | None, settings: Settings) -> None:
+def check_input(recordings: Sequence[Recording], settings: Settings) -> None:
     """Refuse input that no run can use; `BadInput` names what is wrong and where.
 
     The first two frames are decoded, the annotations are read in full. What only a full pass can find
     (damage further on, an interval outside the video) the stages say.
     """
-    found = _checked(video, annotations, settings.input.video_stream, PIXELS_ONLY, settings.input.fps)
-    if annotations is not None:
-        load_annotations(annotations, (found["width"], found["height"]), settings.input.annotation_format)
+    options = settings.input
+    videos = _checked(recordings, options.video_stream, PIXELS_ONLY, options.fps)
+    _read_annotations(recordings, videos, options.annotation_format)
     check_roi(settings)
 
 
 def _checked(
-    video: Path, annotations: Path | None, stream: int | None, limits: VideoLimits, fps: float | None
-) -> VideoSize:
-    try:
-        return check_video(video, stream, limits, fps)
-    except BadInput as error:
-        raise in_what_order(error, annotations) from None
+    recordings: Sequence[Recording], stream: int | None, limits: VideoLimits, fps: float | None
+) -> list[VideoSize]:
+    """Sizes of all videos, which are one; limits on frames and seconds hold for their sum."""
+    require_count(len(recordings))
+    videos: list[VideoSize] = []
+    for number, one in enumerate(recordings):
+        with naming_video(number, len(recordings)):
+            try:
+                videos.append(check_video(one.video, stream, limits, fps))
+            except BadInput as error:
+                raise in_what_order(error, one.annotations) from None
+        require_one_size([(found["width"], found["height"]) for found in videos])
+    if len(videos) > 1:
+        _require_sum(videos, limits)
+    return videos
+
+
+def _require_sum(videos: Sequence[VideoSize], limits: VideoLimits) -> None:
+    frames, seconds = sum(one["declared_frames"] for one in videos), sum(one["declared_s"] for one in videos)
+    if frames > limits.max_video_frames:
+        message = f"the videos have {frames} frames; at most {limits.max_video_frames} are taken (max_video_frames)"
+        raise BadInput(message, code="too_many_frames", where="video")
+    if seconds > limits.max_video_seconds:
+        longest = f"at most {limits.max_video_seconds:g} s are taken (max_video_seconds)"
+        raise BadInput(f"the videos last {seconds:.0f} s; {longest}", code="too_long", where="video")
+
+
+def _read_annotations(recordings: Sequence[Recording], videos: Sequence[VideoSize], form: str) -> int:
+    """Read all annotation files; how many detections they hold."""
+    count = 0
+    for number, (one, found) in enumerate(zip(recordings, videos, strict=True)):
+        with naming_video(number, len(recordings)):
+            count += len(load_annotations(one.annotations, (found["width"], found["height"]), form).detections)
+    return count
 
 
 def in_what_order(error: BadInput, annotations: Path | None) -> BadInput:
     """The error of a video that is none; when the annotations are one, that they are in the wrong order."""
-    if error.code != "not_a_video" or annotations is None or not _is_video(annotations):
+    if error.code != "not_a_video" or annotations is None or not is_video_file(annotations):
         return error
     return BadInput(
         "the video and the annotations are in the wrong order: what should be the annotations is a video",
         code="swapped_files",
         where="video",
     )
-
-
-def _is_video(path: Path) -> bool:
-    try:
-        with path.open("rb") as stream:
-            return looks_like_video(stream.read(512))
-    except OSError:
-        return False
 
 
 def check_video(
@@ -129,10 +152,11 @@ def check_video(
     with open_video(video, stream, fps=fps, max_pixels=limits.max_frame_pixels) as reader:
         _require_length(reader, limits)
         shapes = [_shown_size(reader, frame) for frame in islice(reader.frames(), 2)]
-        codec, declared = reader.codec, reader.declared_frames
+        codec, declared, seconds = reader.codec, reader.declared_frames, float(reader.declared_s or 0)
     if not shapes:
         raise BadInput(f"the video '{video.name}' holds no frame that decodes", code="no_frames", where="video")
-    return {"width": shapes[0][0], "height": shapes[0][1], "codec": codec, "declared_frames": declared}
+    width, height = shapes[0]
+    return {"width": width, "height": height, "codec": codec, "declared_frames": declared, "declared_s": seconds}
 
 
 def _shown_size(reader: VideoReader | PictureReader, frame: DecodedFrame) -> tuple[int, int]:
@@ -166,20 +190,18 @@ def answer(question: Question) -> Answer:
     """Check what a question names.
 
     Args:
-        question: ``video`` and optionally ``annotations`` (paths), ``annotation_format``, ``video_stream``, ``fps``,
-            ``roi`` (shares), ``limits`` (`VideoLimits`).
+        question: ``recordings`` (paths) and ``roi`` (shares), optionally ``annotation_format``, ``video_stream``,
+            ``fps``, ``limits`` (`VideoLimits`).
 
     Returns:
-        ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
+        ``{"videos": [{...}], "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
     """
     try:
-        given = question.get("annotations")
-        path = None if given is None else Path(given)
+        recordings = [Recording.from_dict(one) for one in question["recordings"]]
         limits = VideoLimits(**question.get("limits", {}))
-        found = _checked(Path(question["video"]), path, question.get("video_stream"), limits, question.get("fps"))
-        crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
-        frame = (found["width"], found["height"])
-        annotations = load_annotations(path, frame, question.get("annotation_format", "auto"))
+        videos = _checked(recordings, question.get("video_stream"), limits, question.get("fps"))
+        crop_of(RoiSettings(**question["roi"]), videos[0]["width"], videos[0]["height"])
+        n_detections = _read_annotations(recordings, videos, question.get("annotation_format", "auto"))
     except BladeAtlasError as error:
         return {"error": error.to_dict()}
     except MemoryError:
@@ -187,7 +209,7 @@ def answer(question: Question) -> Answer:
     except Exception as error:  # noqa: BLE001 - the border of the process: what a decoder stumbles over is bad input
         message = f"the input cannot be read ({type(error).__name__})"
         return {"error": BadInput(message, code="probe_died", where="video").to_dict()}
-    return {"video": found, "n_detections": len(annotations.detections)}
+    return {"videos": videos, "n_detections": n_detections}
 
 
 def limit_process(parent: int, memory_bytes: int, seconds: float) -> None:

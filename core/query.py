@@ -62,6 +62,7 @@ class Seeing:
     """A frame that sees a point."""
 
     frame_index: int
+    video: int
     source_index: int
     time_s: float
     quality: float
@@ -104,7 +105,7 @@ class Result:
             if not name.exists():
                 raise BadInput(f"{folder.name} has no {name.relative_to(folder)}: is it a result?", where=name.name)
         self._frames = _frames(folder / FRAMES)
-        self._crop, self._n_frames, self._duration_s = _video(folder / SUMMARY, self._frames)
+        self._crop, self._videos = _summary(folder / SUMMARY, self._frames)
         self.views: Views = views_of(open_model(root / SPARSE))
         try:
             self.mesh: Mesh = oriented(read_mesh(root / DEFECT_SURFACE), self.views)
@@ -116,29 +117,44 @@ class Result:
         # The vertices of a Poisson mesh lie about as far apart as the points that support it.
         self._spacing = float(point_spacing(self.mesh.vertices[::step]) / np.sqrt(step))
 
-    def frame_at(self, time_s: float) -> int:
-        """Source frame of the run nearest to a time; `BadInput` for a time outside the video."""
-        if not 0 <= time_s <= self._duration_s:
-            raise BadInput(f"{time_s:g} s is outside the video: 0 to {self._duration_s:g} s", where="--time")
-        return int(min(self._frames.values(), key=lambda row: abs(row["time_s"] - time_s))["source_index"])
+    def _length_of(self, video: int) -> _Length:
+        """The length of a video; `BadInput` when there is no such one."""
+        if not 0 <= video < len(self._videos):
+            raise BadInput(f"there is no video {video}: 0 to {len(self._videos) - 1}", where="--video")
+        return self._videos[video]
 
-    def point_at(self, source_index: int, x: float, y: float) -> Shown:
+    def frame_at(self, time_s: float, video: int = 0) -> int:
+        """Source frame of the run nearest to a time of a video; `BadInput` for a time outside it."""
+        length = self._length_of(video)
+        if not 0 <= time_s <= length.duration_s:
+            which = f"video {video}" if len(self._videos) > 1 else "the video"
+            raise BadInput(f"{time_s:g} s is outside {which}: 0 to {length.duration_s:g} s", where="--time")
+        own = [row for row in self._frames.values() if row["video"] == video]
+        if not own:
+            raise BadInput(f"no frame of video {video} took part", where="--video")
+        return int(min(own, key=lambda row: abs(row["time_s"] - time_s))["source_index"])
+
+    def point_at(self, source_index: int, x: float, y: float, video: int = 0) -> Shown:
         """What a pixel of a source frame shows.
 
         Args:
             source_index: decoded frame of the video, from 0.
             x: pixels from the left edge of the whole frame.
             y: from its upper edge.
+            video: number of the video, from 0 in the order given.
 
         Raises:
             BadInput: the video has no such frame, or the frame no such pixel.
         """
-        if not 0 <= source_index < self._n_frames:
-            raise BadInput(f"the video has no frame {source_index}: 0 to {self._n_frames - 1}", where="--frame")
+        n_frames = self._length_of(video).n_frames
+        if not 0 <= source_index < n_frames:
+            which = f"video {video}" if len(self._videos) > 1 else "the video"
+            raise BadInput(f"{which} has no frame {source_index}: 0 to {n_frames - 1}", where="--frame")
         width, height = self._crop.source_width, self._crop.source_height
         if not (0 <= x <= width and 0 <= y <= height):
             raise BadInput(f"{x:g},{y:g} is outside the frame: 0,0 to {width},{height}", where="--pixel")
-        row = next((row for row in self._frames.values() if row["source_index"] == source_index), None)
+        here = (video, source_index)
+        row = next((row for row in self._frames.values() if (row["video"], row["source_index"]) == here), None)
         if row is None:
             return Shown(None, Reason.NO_REGISTERED_VIEW)
         index, time_s = int(row["index"]), float(row["time_s"])
@@ -180,8 +196,18 @@ class Result:
             raise BadInput(f"{at} is {distance:.4g} away from the surface, which spans {ranges}", where="--point")
         return OnSurface(_three(points[0]), int(faces[0]), distance, self._spacing)
 
-    def frames_seeing(self, place: F64) -> list[Seeing]:
-        """Registered frames that see the point of the surface nearest to a (3,) place, best first."""
+    @property
+    def n_videos(self) -> int:
+        """Videos of the run."""
+        return len(self._videos)
+
+    def frames_seeing(self, place: F64, video: int | None = None) -> list[Seeing]:
+        """Registered frames that see the point of the surface nearest to a (3,) place, best first.
+
+        With `video` those of one video alone; `BadInput` when there is no such one.
+        """
+        if video is not None:
+            self._length_of(video)
         on = self.on_surface(place)
         point, tolerance = np.array(on.point), TOLERANCE_SPACINGS * self._spacing
         normal = self._normals[on.face]
@@ -189,10 +215,13 @@ class Result:
         seeing = []
         for one in found:
             row = self._frames[one.frame_index]
+            if video not in (None, row["video"]):
+                continue
             x, y = one.at or (0.0, 0.0)
             pixel = (x * self._crop.source_width, y * self._crop.source_height)
             source = int(row["source_index"])
-            seeing.append(Seeing(one.frame_index, source, float(row["time_s"]), round(one.quality, 4), *pixel))
+            time_s, quality = float(row["time_s"]), round(one.quality, 4)
+            seeing.append(Seeing(one.frame_index, int(row["video"]), source, time_s, quality, *pixel))
         return seeing
 
     def _defect_of(self, face: int) -> int | None:
@@ -242,14 +271,27 @@ def _three(values: F64) -> tuple[float, float, float]:
 
 def _frames(path: Path) -> dict[int, Mapping[str, Any]]:
     rows = [
-        {"index": int(r["index"]), "source_index": int(r["source_index"]), "time_s": float(r["time_s"])}
+        {
+            "index": int(r["index"]),
+            "video": int(r.get("video") or 0),  # results did not always tell
+            "source_index": int(r["source_index"]),
+            "time_s": float(r["time_s"]),
+        }
         for r in read_csv(path)
     ]
     return {int(row["index"]): row for row in rows}
 
 
-def _video(path: Path, frames: Mapping[int, Mapping[str, Any]]) -> tuple[Crop, int, float]:
-    """The part of the frames that was used, frames in the video, its duration in s."""
+@dataclass(frozen=True)
+class _Length:
+    """Of a video."""
+
+    n_frames: int
+    duration_s: float
+
+
+def _summary(path: Path, frames: Mapping[int, Mapping[str, Any]]) -> tuple[Crop, list[_Length]]:
+    """The part of the frames that was used, and the length of every video."""
     frame = json.loads(path.read_text(encoding="utf-8")).get("frame")
     if not frame or not frame.get("crop"):
         raise BadInput(f"{SUMMARY} does not say which part of the frames was used", where=SUMMARY)
@@ -257,5 +299,6 @@ def _video(path: Path, frames: Mapping[int, Mapping[str, Any]]) -> tuple[Crop, i
     # Summaries did not always tell the video's length: what took part is known to be in it.
     last = max((int(row["source_index"]) for row in frames.values()), default=-1)
     end = max((float(row["time_s"]) for row in frames.values()), default=0.0)
-    n_frames, duration_s = frame.get("n_frames") or last + 1, frame.get("duration_s") or end
-    return Crop(x0, y0, x1, y1, frame["width"], frame["height"]), n_frames, duration_s
+    whole = _Length(frame.get("n_frames") or last + 1, frame.get("duration_s") or end)
+    videos = [_Length(one["n_frames"], one["duration_s"]) for one in frame.get("videos", ())]
+    return Crop(x0, y0, x1, y1, frame["width"], frame["height"]), videos or [whole]

@@ -7,7 +7,7 @@ stops with `Cancelled` soon after `task.cancelled()` turns true.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from core.errors import Cancelled, StageFailed
 from core.settings import Settings
 from core.task_key import key_of, parts_of
 from core.video.limits import MAX_FRAME_PIXELS
+from core.videos import Recording
 
 Facts = dict[str, Any]
 
@@ -37,8 +38,8 @@ class StageTask:
     """Result folder of every finished task this one depends on, by task key."""
     facts: Mapping[str, Facts]
     """Facts of the same tasks, by task key."""
-    video: Path
-    annotations: Path | None
+    recordings: Sequence[Recording]
+    """The videos of the run in the order given, each with its annotations."""
     out: Path
     """Existing empty folder; everything the stage writes lies below it."""
     threads: int = 1

@@ -20,6 +20,7 @@ from core.settings import Settings
 from core.stage import Facts
 from core.states import InspectionState, TaskState
 from store.graph import Graph
+from store.leasing import input_files
 from store.models import LEASABLE, OVER_TASK, Inspection, Result, Task
 from store.tables import write_rows
 
@@ -115,9 +116,7 @@ def _settle(
         task.state, task.ended_at = TaskState.SKIPPED, now
         return False
     digests = {dep.key: dep.digest for dep in depends if dep.state == TaskState.SUCCEEDED and dep.digest is not None}
-    task.fingerprint = graph.fingerprint(
-        spec, settings, digests, inspection.video_sha256, inspection.annotations_sha256
-    )
+    task.fingerprint = graph.fingerprint(spec, settings, digests, input_files(inspection))
     # Held until the commit: who cleans up waits, and then sees that this task uses it.
     result = session.get(Result, task.fingerprint, with_for_update={"read": True})
     if result is None:

@@ -23,6 +23,7 @@ from fsspec.implementations.local import LocalFileSystem
 
 from core.errors import BadInput, ResourceError
 from core.fingerprint import digest_of_file
+from core.videos import Recording
 from store.disk import sync_path
 from store.records import InputFiles
 
@@ -234,23 +235,22 @@ class LocalInputs:
     cache: Path | None = None
     """Where inputs from an object store are kept as long as an inspection uses them."""
 
-    def video(self, files: InputFiles, needed: bool) -> Path:
-        """The video as a local file.
+    def recording(self, files: InputFiles, *, video: bool, annotations: bool) -> Recording:
+        """A video and its annotations as local files.
 
         Args:
-            needed: False = only its name is asked for; nothing is downloaded.
+            files: in the store.
+            video: False = only its name is asked for; nothing is downloaded.
+            annotations: the same of them.
 
         Raises:
-            FileNotFoundError: it is gone from the store.
+            FileNotFoundError: one is gone from the store.
             ResourceError: what the store holds is damaged.
         """
-        return self._local(files.video, files.video_sha256, needed)
-
-    def annotations(self, files: InputFiles, needed: bool) -> Path | None:
-        """The annotations, the same way; None when the inspection has none."""
-        if files.annotations is None or files.annotations_sha256 is None:
-            return None
-        return self._local(files.annotations, files.annotations_sha256, needed)
+        notes = None
+        if files.annotations is not None and files.annotations_sha256 is not None:
+            notes = self._local(files.annotations, files.annotations_sha256, annotations)
+        return Recording(self._local(files.video, files.video_sha256, video), notes)
 
     def evict(self, used: Collection[str], older_than_s: float) -> int:
         """Remove cached files whose hash nobody uses and that were not opened lately; returns how many."""

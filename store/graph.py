@@ -11,7 +11,9 @@ from core.fingerprint import task_fingerprint
 from core.graph import STAGES, StageSpec, TaskSpec, expand
 from core.settings import Settings, declared_values
 from core.stage import Facts
+from core.videos import input_role
 from core.weight_files import weights_digest
+from store.records import InputFiles
 
 NO_RESULT = "none"
 """Stands in a fingerprint for a dependency without a result."""
@@ -31,16 +33,16 @@ class Graph:
         task: TaskSpec,
         settings: Settings,
         digests: Mapping[str, str],
-        video_sha256: str,
-        annotations_sha256: str | None,
+        files: Sequence[InputFiles],
     ) -> str:
         """Name of the result of `task`; `digests` holds those of its dependencies that have a result."""
         spec = self.stages[task.stage]
         inputs = {key: digests.get(key, NO_RESULT) for key in task.depends}
-        if spec.reads_video:
-            inputs["input:video"] = video_sha256
-        if spec.reads_annotations:
-            inputs["input:annotations"] = annotations_sha256 or NO_RESULT
+        for number, one in enumerate(files):
+            if spec.reads_video:
+                inputs[f"input:{input_role('video', number)}"] = one.video_sha256
+            if spec.reads_annotations:
+                inputs[f"input:{input_role('annotations', number)}"] = one.annotations_sha256 or NO_RESULT
         inputs.update({f"weights:{name}": weights_digest(name) for name in spec.weights})
         chosen = declared_values(settings, spec.settings)
         return task_fingerprint(task.stage, spec.version, chosen, dict(task.args), inputs)

@@ -10,13 +10,15 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from datetime import timedelta
 
-from sqlalchemy import delete, or_, select
+from sqlalchemy import ColumnElement, delete, or_, select
+from sqlalchemy.orm import Session
 
 from store.db import Database
 from store.leasing import lock_inspection
 from store.models import (
     ACTIVE_INSPECTION,
     Artifact,
+    FurtherVideo,
     IdempotencyKey,
     Inspection,
     Reservation,
@@ -73,15 +75,12 @@ class Retention:
     def inputs_in_use(self) -> set[str]:
         """Hashes of the input files of inspections that are not purged."""
         with self.db.read() as session:
-            query = select(Inspection.video_sha256, Inspection.annotations_sha256).where(Inspection.purged_at.is_(None))
-            return {sha256 for row in session.execute(query) for sha256 in row if sha256}
+            return _inputs(session, Inspection.purged_at.is_(None))
 
     def inputs_at_work(self) -> set[str]:
         """The same of inspections that are not over."""
         with self.db.read() as session:
-            query = select(Inspection.video_sha256, Inspection.annotations_sha256)
-            rows = session.execute(query.where(Inspection.state.in_(ACTIVE_INSPECTION)))
-            return {sha256 for row in rows for sha256 in row if sha256}
+            return _inputs(session, Inspection.state.in_(ACTIVE_INSPECTION))
 
     def folders_in_use(self) -> set[str]:
         """Folders of the artifact store with files that are shown, or may be any moment."""
@@ -154,6 +153,14 @@ class Retention:
 
 
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))
+
+
+def _inputs(session: Session, which: ColumnElement[bool]) -> set[str]:
+    """Hashes of the input files of the inspections of which `which` is true."""
+    first = select(Inspection.video_sha256, Inspection.annotations_sha256).where(which)
+    others = select(FurtherVideo.video_sha256, FurtherVideo.annotations_sha256)
+    others = others.join(Inspection, Inspection.id == FurtherVideo.inspection_id).where(which)
+    return {sha256 for query in (first, others) for row in session.execute(query) for sha256 in row if sha256}
 
 
 def _kept_for_later(previous: Iterable[Collection[str]], fingerprint: str) -> bool:

@@ -5,7 +5,7 @@ Leases on their tasks are `store.plan`'s.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,16 +19,17 @@ from core.states import InspectionState, TaskState
 from store.advance import advance
 from store.db import Database
 from store.graph import CORE_GRAPH, Graph
-from store.leasing import changed, input_files, lock_inspection, put_result
+from store.leasing import changed, input_files, lock_inspection, put_result, set_input_files
 from store.models import ACTIVE_INSPECTION, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, InspectionView, Result, TaskView
 from store.tables import clear_rows, replace_rows
 
 
-def input_digest(files: InputFiles) -> str:
-    """Name of an input by its content."""
-    return digest_of({"video": files.video_sha256, "annotations": files.annotations_sha256})
+def input_digest(files: Sequence[InputFiles]) -> str:
+    """Name of an input by its content, and by the order of several videos."""
+    names = [{"video": one.video_sha256, "annotations": one.annotations_sha256} for one in files]
+    return digest_of(names[0] if len(names) == 1 else names)
 
 
 @dataclass(frozen=True)
@@ -38,23 +39,27 @@ class Inspections:
     db: Database
     graph: Graph = CORE_GRAPH
 
-    def create(self, inspection_id: str, files: InputFiles, settings: Settings, out: str, **more: Any) -> None:
+    def create(
+        self, inspection_id: str, files: Sequence[InputFiles], settings: Settings, out: str, **more: Any
+    ) -> None:
         """A new inspection with the first tasks of its plan; `more` are further columns, e.g. owner and label."""
         with self.db.write() as session:
             self.create_in(session, inspection_id, files, settings, out, **more)
 
     def create_in(
-        self, session: Session, inspection_id: str, files: InputFiles, settings: Settings, out: str, **more: Any
+        self,
+        session: Session,
+        inspection_id: str,
+        files: Sequence[InputFiles],
+        settings: Settings,
+        out: str,
+        **more: Any,
     ) -> None:
         """The same inside the caller's transaction."""
         now = self.db.now(session)
         inspection = Inspection(
             id=inspection_id,
             state=InspectionState.QUEUED,
-            video_path=files.video,
-            video_sha256=files.video_sha256,
-            annotations_path=files.annotations,
-            annotations_sha256=files.annotations_sha256,
             input_digest=input_digest(files),
             settings=settings.model_dump(mode="json"),
             out=out,
@@ -63,6 +68,7 @@ class Inspections:
             updated_at=now,
             **more,
         )
+        set_input_files(inspection, files)
         session.add(inspection)
         session.flush()
         advance(session, self.graph, inspection, now)
@@ -70,7 +76,7 @@ class Inspections:
     def reopen(
         self,
         inspection_id: str,
-        files: InputFiles,
+        files: Sequence[InputFiles],
         settings: Settings,
         *,
         ended_only: bool = False,
@@ -104,8 +110,7 @@ class Inspections:
             clear_rows(session, inspection_id)
             session.expunge_all()
             inspection = lock_inspection(session, inspection_id)
-            inspection.video_path, inspection.video_sha256 = files.video, files.video_sha256
-            inspection.annotations_path, inspection.annotations_sha256 = files.annotations, files.annotations_sha256
+            set_input_files(inspection, files)
             inspection.input_digest, inspection.settings = input_digest(files), chosen
             inspection.state, inspection.error, inspection.failed_stage = InspectionState.QUEUED, None, None
             inspection.started_at, inspection.ended_at = None, None

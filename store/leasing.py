@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import PurePosixPath
 from typing import Any
@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 
 from core.errors import BadInput
 from core.states import AttemptOutcome, TaskState
-from store.models import LEASABLE, Attempt, Inspection, Task
+from store.models import LEASABLE, Attempt, FurtherVideo, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, Lease, Result
 
@@ -67,14 +67,28 @@ def lease_of(session: Session, inspection: Inspection, task: Task) -> Lease:
     )
 
 
-def input_files(inspection: Inspection) -> InputFiles:
-    """The inspection's input as a value."""
-    return InputFiles(
-        video=inspection.video_path,
-        video_sha256=inspection.video_sha256,
-        annotations=inspection.annotations_path,
-        annotations_sha256=inspection.annotations_sha256,
+def input_files(inspection: Inspection) -> tuple[InputFiles, ...]:
+    """The inspection's videos with their annotations as values, in the order given."""
+    return tuple(
+        InputFiles(row.video_path, row.video_sha256, row.annotations_path, row.annotations_sha256)
+        for row in _rows(inspection)
     )
+
+
+def _rows(inspection: Inspection) -> list[Inspection | FurtherVideo]:
+    """The rows with the videos of an inspection."""
+    return [inspection, *inspection.further_videos]
+
+
+def set_input_files(inspection: Inspection, files: Sequence[InputFiles]) -> None:
+    """Write an inspection's videos with their annotations; ValueError without any."""
+    if not files:
+        raise ValueError("an inspection has at least one video")
+    known = {row.number: row for row in inspection.further_videos}
+    inspection.further_videos = [known.get(number) or FurtherVideo(number=number) for number in range(1, len(files))]
+    for row, one in zip(_rows(inspection), files, strict=True):
+        row.video_path, row.video_sha256 = one.video, one.video_sha256
+        row.annotations_path, row.annotations_sha256 = one.annotations, one.annotations_sha256
 
 
 def begin_attempt(session: Session, task: Task, now: datetime) -> None:

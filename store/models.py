@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Any
 
 from sqlalchemy import BigInteger, ForeignKey, Index, String, UniqueConstraint
-from sqlalchemy.orm import Mapped, mapped_column
+from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from core.scene import case as declared_cases
 from core.scene import defect as declared_events
@@ -41,8 +41,22 @@ def _inspection_key(primary: bool = True) -> Mapped[str]:
     return mapped_column(String(64), key, primary_key=primary, sort_order=-1 if primary else 0)
 
 
+class FurtherVideo(Base):
+    """A video of an inspection after the first, which is in the inspection's own row."""
+
+    __tablename__ = "further_videos"
+
+    inspection_id: Mapped[str] = _inspection_key()
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    """From 1, in the order given."""
+    video_path: Mapped[str]
+    video_sha256: Mapped[str] = mapped_column(String(64))
+    annotations_path: Mapped[str | None]
+    annotations_sha256: Mapped[str | None] = mapped_column(String(64))
+
+
 class Inspection(Base):
-    """One video, its annotations, its parameters, its result."""
+    """Videos, their annotations, parameters, the result."""
 
     __tablename__ = "inspections"
 
@@ -52,6 +66,10 @@ class Inspection(Base):
     video_sha256: Mapped[str] = mapped_column(String(64))
     annotations_path: Mapped[str | None]
     annotations_sha256: Mapped[str | None] = mapped_column(String(64))
+    further_videos: Mapped[list[FurtherVideo]] = relationship(
+        order_by=FurtherVideo.number, cascade="all, delete-orphan", passive_deletes=True, lazy="selectin"
+    )
+    """`store.leasing.input_files` gives the first and these together."""
     input_digest: Mapped[str] = mapped_column(String(64))
     settings: Mapped[dict[str, Any]]
     out: Mapped[str]

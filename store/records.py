@@ -13,7 +13,7 @@ from core.states import InspectionState, TaskState
 
 @dataclass(frozen=True)
 class InputFiles:
-    """The input of an inspection, by path and by content."""
+    """A video of an inspection and its annotations, by path and by content."""
 
     video: str
     video_sha256: str
@@ -36,7 +36,8 @@ class Lease:
     optional: bool
     fingerprint: str
     settings: Mapping[str, Any]
-    files: InputFiles
+    files: tuple[InputFiles, ...]
+    """In the order given."""
     inputs: Mapping[str, PurePosixPath]
     """Relative result path of every dependency that has a result, by task key."""
     facts: Mapping[str, Facts]
@@ -88,7 +89,7 @@ class InspectionView:
 
     id: str
     state: InspectionState
-    files: InputFiles
+    files: tuple[InputFiles, ...]
     input_digest: str
     settings: Mapping[str, Any]
     out: str

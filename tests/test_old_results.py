@@ -25,6 +25,7 @@ from bench.soak.toy import GRAPH
 from cli.main import main
 from core.errors import BadInput
 from core.settings import make_settings
+from core.videos import Recording
 from store.db import open_sqlite
 from store.factory import open_artifacts, open_database
 from store.models import ApiKey
@@ -197,10 +198,12 @@ def test_the_same_input_goes_on_in_an_old_folder(folder: Path) -> None:
         if event.kind == "opened":
             raise KeyboardInterrupt
 
-    begun = run_inspection(video, video.with_suffix(".json"), folder, make_settings("draft"), on_event=interrupt)
+    begun = run_inspection(
+        [Recording(video, video.with_suffix(".json"))], folder, make_settings("draft"), on_event=interrupt
+    )
     assert begun.state == "interrupted"
     assert (folder / "mapping" / "defects.json").is_file(), "nothing is taken away before there is something new"
-    ended = run_inspection(video, video.with_suffix(".json"), folder, settings, graph=fake_stages.GRAPH)
+    ended = run_inspection([Recording(video, video.with_suffix(".json"))], folder, settings, graph=fake_stages.GRAPH)
     assert (ended.state, ended.reused) == ("succeeded", 0)
     with pytest.raises(BadInput, match="another input"):
-        run_inspection(video, None, folder, settings, graph=fake_stages.GRAPH)
+        run_inspection([Recording(video)], folder, settings, graph=fake_stages.GRAPH)

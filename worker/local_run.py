@@ -26,6 +26,7 @@ from core.report.summary import stage_state
 from core.settings import Settings
 from core.states import RunState, TaskState, run_state
 from core.video.pictures import digest_of_video
+from core.videos import Recording
 from store.db import Database, open_sqlite
 from store.graph import CORE_GRAPH, Graph
 from store.inspections import Inspections, input_digest
@@ -119,8 +120,7 @@ class Names:
 
 
 def run_inspection(
-    video: Path,
-    annotations: Path | None,
+    recordings: Sequence[Recording],
     out: Path,
     settings: Settings,
     *,
@@ -134,6 +134,9 @@ def run_inspection(
     """Run or continue one inspection in the folder `out`.
 
     Args:
+        recordings: its videos in order, each with its annotations.
+        out: the folder.
+        settings: of the run.
         workers: tasks side by side; None = number of cores.
         on_event: called from runner threads, one call at a time.
         from_stage: delete the results of this stage and of all that depend on it.
@@ -149,7 +152,7 @@ def run_inspection(
     """
     if from_stage is not None and from_stage not in graph.stages:
         raise BadInput(f"unknown stage '{from_stage}'; known: {', '.join(graph.stages)}", where="--from")
-    files = _input_files(video, annotations)
+    files = [_input_files(one) for one in recordings]
     with locked(out.resolve()) as folder:
         database = open_sqlite(folder.database)
         try:
@@ -163,7 +166,8 @@ def run_inspection(
             database.close()
 
 
-def _input_files(video: Path, annotations: Path | None) -> InputFiles:
+def _input_files(recording: Recording) -> InputFiles:
+    video, annotations = recording.video, recording.annotations
     video_sha256 = digest_of_video(video)
     if annotations is not None:
         require_file(annotations, "annotations")
@@ -217,7 +221,9 @@ class _Run:
         owner = f"run:{os.getpid()}"
         self._runners = LocalRunners(runner, owner, workers, deployment.heartbeat_s, inspection_id=_LOCAL)
 
-    def open(self, files: InputFiles, settings: Settings, names: Names, from_stage: str | None, force: bool) -> None:
+    def open(
+        self, files: Sequence[InputFiles], settings: Settings, names: Names, from_stage: str | None, force: bool
+    ) -> None:
         """Put the plan in order: what crashed runs left, another input, forgotten stages, new parameters."""
         known = next(iter(self._inspections.find()), None)
         if not force:
@@ -234,7 +240,7 @@ class _Run:
             self._plan.take_over(_LOCAL)
             self._inspections.reopen(_LOCAL, files, settings, **asdict(names))
 
-    def _refuse_foreign(self, known: InspectionView | None, files: InputFiles) -> None:
+    def _refuse_foreign(self, known: InspectionView | None, files: Sequence[InputFiles]) -> None:
         out = self._folder.out
         if known is not None and known.input_digest != input_digest(files):
             message = f"'{out}' holds the result of another input; choose another folder or use --force"

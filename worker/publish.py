@@ -29,6 +29,7 @@ from core.stage import Facts
 from core.states import TaskState, run_state
 from core.task_key import key_of
 from core.versions import all_versions
+from core.videos import input_role
 from store.files import ArtifactStore, Stored
 from store.inspections import Inspections
 from store.json_log import logger
@@ -83,10 +84,11 @@ def record_of(
     folders = Folders(tasks, results)
     error = dict(inspection.error or {})
     state = run_state(inspection.state)
-    files = inspection.files
-    inputs = {"video": files.video_sha256}
-    if files.annotations_sha256:
-        inputs["annotations"] = files.annotations_sha256
+    inputs = {}
+    for number, one in enumerate(inspection.files):
+        inputs[input_role("video", number)] = one.video_sha256
+        if one.annotations_sha256:
+            inputs[input_role("annotations", number)] = one.annotations_sha256
     record = RunRecord(
         settings=Settings.model_validate(inspection.settings),
         state=state,

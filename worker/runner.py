@@ -141,7 +141,10 @@ class TaskRunner:
     def _spec(self, lease: Lease, temporary: Path) -> dict[str, Any]:
         stage = self.plan.graph.stages[lease.stage]
         settings = Settings.model_validate(lease.settings)
-        annotations = self.inputs.annotations(lease.files, needed=stage.reads_annotations)
+        recordings = [
+            self.inputs.recording(one, video=stage.reads_video, annotations=stage.reads_annotations)
+            for one in lease.files
+        ]
         return {
             "key": lease.key,
             "entry": stage.entry,
@@ -152,8 +155,7 @@ class TaskRunner:
             "declared": list(stage.settings),
             "inputs": {key: str(self.results.path(path)) for key, path in lease.inputs.items()},
             "facts": {key: dict(facts) for key, facts in lease.facts.items()},
-            "video": str(self.inputs.video(lease.files, needed=stage.reads_video)),
-            "annotations": str(annotations) if annotations else None,
+            "recordings": [one.to_dict() for one in recordings],
             "out": str(temporary),
             "max_frame_pixels": self.max_frame_pixels,
             "threads": 1 if stage.fan_out else settings.compute.threads or available_cores(),

@@ -33,6 +33,7 @@ from core.child_environment import child_environment
 from core.errors import BladeAtlasError, DiskFull, ResourceError, error_from_dict
 from core.settings import Settings, only_declared
 from core.stage import StageResult, StageTask
+from core.videos import Recording
 from store.disk import NO_SPACE, disk_is_full
 from worker.results import seal
 
@@ -290,8 +291,7 @@ def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) 
         settings=only_declared(Settings.model_validate(spec["settings"]), spec["declared"]),
         inputs={key: Path(path) for key, path in spec["inputs"].items()},
         facts=spec["facts"],
-        video=Path(spec["video"]),
-        annotations=Path(spec["annotations"]) if spec["annotations"] else None,
+        recordings=[Recording.from_dict(fields) for fields in spec["recordings"]],
         out=out,
         threads=spec["threads"],
         max_frame_pixels=spec["max_frame_pixels"],

@@ -18,8 +18,9 @@ from api.negotiation import matches
 from api.paging import next_link
 from api.parameters import Text
 from api.problems import Refused, not_found, responses
+from api.sending import CREATE_BODY, asked_by_form, asked_by_json
 from api.state import State, state_of
-from api.submit import CREATE_BODY, Asked, accept, asked_by_form, asked_by_json
+from api.submit import Asked, accept
 from api.watching import Snapshot
 from store.inspections import mark_deleted
 from store.listing import Filter, list_inspections
@@ -62,7 +63,7 @@ async def create(
         ),
     ] = None,
 ) -> Response:
-    """Take a video, its annotations and parameters, or the names of finished uploads, and queue the work."""
+    """Take videos, their annotations and parameters, or the names of finished uploads, and queue the work."""
     state = state_of(request)
     async with _asked(request, state, caller, idempotency_key) as asked:
         inspection_id = await accept(state, asked, request)

@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 from api.auth import caller
 from api.problems import responses
 from api.schemas import Parameters
+from api.sending import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
 from api.state import state_of
-from api.submit import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
 from core.annotations.form import json_schema
 from core.settings import PRESET_NAMES, Settings, make_settings, option_names
 from core.settings.describe import describe_options

@@ -42,6 +42,7 @@ _ERRORS = responses(401, 404, 410, 422, 503)
 Label = Annotated[Text | None, Query(description="exactly this label")]
 Blade = Annotated[Text | None, Query(description="exactly this blade")]
 Confidence = Annotated[Share | None, Query(description="at least this confidence")]
+Video = Annotated[int | None, Query(ge=0, lt=2**31, description="number of the video, from 0 in the order given")]
 From = Annotated[Seconds | None, Query(description="seconds from the first frame: what ends at or after it")]
 To = Annotated[Seconds | None, Query(description="seconds from the first frame: what begins at or before it")]
 
@@ -114,6 +115,7 @@ def detections(
     inspection_id: str,
     asked: AskedFor,
     outcome: Annotated[str, OneOf(Outcome)] | None = None,
+    video: Video = None,
     label: Label = None,
     blade: Blade = None,
     defect_id: Annotated[int | None, Query(ge=0, lt=2**31)] = None,
@@ -122,7 +124,7 @@ def detections(
     to_s: To = None,
 ) -> Response:
     """Rows of mapping/detections.csv, none dropped unless a filter says so."""
-    equal = {"outcome": outcome, "label": label, "blade": blade, "defect_id": defect_id}
+    equal = {"outcome": outcome, "video": video, "label": label, "blade": blade, "defect_id": defect_id}
     chosen = RowFilter(equal, min_confidence, from_s, to_s)
     return _answer(request, caller, inspection_id, DETECTIONS, chosen, asked)
 
@@ -138,6 +140,7 @@ def timeline(
     caller: CallerOf,
     inspection_id: str,
     asked: AskedFor,
+    video: Video = None,
     label: Label = None,
     defect_id: Annotated[int | None, Query(ge=0, lt=2**31)] = None,
     min_confidence: Confidence = None,
@@ -145,7 +148,7 @@ def timeline(
     to_s: To = None,
 ) -> Response:
     """Rows of mapping/timeline.csv, by start."""
-    chosen = RowFilter({"label": label, "defect_id": defect_id}, min_confidence, from_s, to_s)
+    chosen = RowFilter({"video": video, "label": label, "defect_id": defect_id}, min_confidence, from_s, to_s)
     return _answer(request, caller, inspection_id, TIMELINE, chosen, asked)
 
 

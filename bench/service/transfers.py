@@ -90,7 +90,7 @@ def _publish(data: Path, source: Path) -> str:
     """A finished inspection with one artifact; the artifact's path on the server."""
     stored = ArtifactStore(data / "artifacts").put("inspections/large/1/large.bin", source)
     inspection_id, database = uuid.uuid4().hex, open_sqlite(data / "bladeatlas.db")
-    files = InputFiles("inputs/none/video", "0" * 64, None, None)
+    files = [InputFiles("inputs/none/video", "0" * 64, None, None)]
     with database.write() as session:
         Inspections(database).create_in(session, inspection_id, files, make_settings(), "")
         row = session.get_one(Inspection, inspection_id)

@@ -28,7 +28,7 @@ from bench.soak.fleet import Fleet
 from bench.soak.servers import PostgresServer, RedisServer
 from core.states import AttemptOutcome, InspectionState, TaskState
 from store.db import Database
-from store.models import Artifact, Attempt, Inspection, Result, Task
+from store.models import Artifact, Attempt, FurtherVideo, Inspection, Result, Task
 from worker.results import MANIFEST
 
 _TRANSFERS = 2
@@ -223,8 +223,13 @@ def orphans(database: Database, data: Path) -> list[str]:
 def _unknown(database: Database, store: Path) -> list[str]:
     with database.read() as session:
         known = set(session.scalars(select(Artifact.key)))
-        inputs = set(session.scalars(select(Inspection.video_path)))
-        inputs |= {path for path in session.scalars(select(Inspection.annotations_path)) if path}
+        inputs = {
+            path
+            for table in (Inspection, FurtherVideo)
+            for row in session.execute(select(table.video_path, table.annotations_path))
+            for path in row
+            if path
+        }
         logs = {f"logs/{name}" for name in session.scalars(select(Inspection.id))}
         results = {f"results/{path}" for path in session.scalars(select(Result.path))}
     unknown = []

@@ -26,7 +26,6 @@ class FinishedRun:
 
     out: Path
     settings: Settings
-    video: Path
     folders: dict[str, Path]
     facts: dict[str, Facts]
 
@@ -72,7 +71,6 @@ def open_run(out: Path) -> Iterator[FinishedRun]:
     yield FinishedRun(
         out=out,
         settings=Settings.model_validate(inspection.settings),
-        video=Path(inspection.files.video),
         folders={task.key: folder.results / str(task.path) for task in done},
         facts={task.key: dict(task.facts or {}) for task in done},
     )

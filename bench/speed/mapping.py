@@ -38,7 +38,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int) -> Table:
         def once() -> None:
             out = folder / f"out{next(number)}"
             out.mkdir()
-            task = StageTask("map_defects", {}, run.settings, inputs, run.facts, run.video, None, out, threads)
+            task = StageTask("map_defects", {}, run.settings, inputs, run.facts, (), out, threads)
             mapped.append(int(map_defects(task).facts["outcomes"].get("mapped", 0)))
 
         timing = interleaved({"mapping": once}, repeat)["mapping"]

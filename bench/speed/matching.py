@@ -21,7 +21,7 @@ Pair = tuple[int, int]
 def draw_pairs(run: FinishedRun, count: int, seed: int = 0) -> list[Pair]:
     """Pairs drawn without replacement from the whole pair list of the run, in order."""
     frames = run.frames()
-    pairs = match_pairs(frames.times_s, frames.n_search, run.settings.matching.window)
+    pairs = match_pairs(frames.moments_s, frames.n_search, run.settings.matching.window)
     return sorted(random.Random(seed).sample(pairs, min(count, len(pairs))))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from types import TracebackType
@@ -18,6 +18,7 @@ from cli.client.transfers import OnBytes, Transfers, no_progress
 from cli.client.upload import upload_file
 from cli.client.values import ArtifactInfo, InspectionInfo
 from core.errors import BadInput
+from core.videos import Recording
 
 _LONG_POLL_S = 30
 _TIMEOUT = httpx.Timeout(60.0, connect=10.0)
@@ -59,17 +60,29 @@ class Client:
         annotations: Path | None = None,
         parameters: Mapping[str, Any] | None = None,
         *,
+        further: Sequence[Recording] = (),
         idempotency_key: str | None = None,
         on_bytes: OnBytes = no_progress,
     ) -> InspectionInfo:
-        """Upload the files and start an inspection; one inspection, however often the network fails."""
-        body: dict[str, Any] = {"video_upload": self.upload(video, on_bytes), "parameters": dict(parameters or {})}
-        if annotations is not None:
-            body["annotations_upload"] = self.upload(annotations, on_bytes)
+        """Upload the files and start an inspection; one inspection, however often the network fails.
+
+        `further` are videos of the same inspection after the first, each with its annotations.
+        """
+        recordings = [Recording(video, annotations), *further]
+        uploads = [self._uploaded(one, on_bytes) for one in recordings]
+        body: dict[str, Any] = {"parameters": dict(parameters or {})}
+        body |= {"videos": uploads} if further else uploads[0]
         headers = {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
         response = self._answer(lambda: self._http.post("/v1/inspections", json=body, headers=headers))
-        self._transfers.remove(self._server, video, *([annotations] if annotations else []))
+        sent = [path for one in recordings for path in (one.video, one.annotations) if path is not None]
+        self._transfers.remove(self._server, *sent)
         return _inspection(response)
+
+    def _uploaded(self, recording: Recording, on_bytes: OnBytes) -> dict[str, str]:
+        names = {"video_upload": self.upload(recording.video, on_bytes)}
+        if recording.annotations is not None:
+            names["annotations_upload"] = self.upload(recording.annotations, on_bytes)
+        return names
 
     def get(self, inspection_id: str) -> InspectionInfo:
         """The inspection as it is now."""

@@ -12,6 +12,7 @@ from core.annotations.model import Annotations
 from core.errors import BadInput
 from core.flags import Flag, Severity
 from core.scene.detection import Detection, Mask
+from core.scene.frame import SourceFrame
 from core.video.table import FrameTable
 
 MAX_OUTSIDE_SHARE = 0.5
@@ -25,19 +26,28 @@ class PlacedAnnotations:
     """All detections by id; masks by source frame; and what the reader should know."""
 
     detections: tuple[Detection, ...]
-    masks: dict[int, tuple[Mask, ...]]
+    masks: dict[SourceFrame, tuple[Mask, ...]]
     keys_outside: tuple[str, ...]
-    looked_at: tuple[int, ...]
+    looked_at: tuple[SourceFrame, ...]
     """Source frames that have a key, with detections or without: the detector saw them."""
     flags: tuple[Flag, ...]
     convention: Fitted
 
 
-def place(annotations: Annotations, table: FrameTable, convention: str = "auto") -> PlacedAnnotations:
-    """Give every key its frame, by the convention that the keys of the file follow.
+def place(
+    annotations: Annotations, table: FrameTable, convention: str = "auto", video: int = 0, first_id: int = 0
+) -> PlacedAnnotations:
+    """Give every key of a file its frame, by the convention that the keys of the file follow.
 
     Keys outside the video keep their detections, without a frame. A cut-off video has annotations beyond
     its end as a matter of course; otherwise many of them mean the wrong file.
+
+    Args:
+        annotations: of one file.
+        table: frames of the video that it is of.
+        convention: a clock, or ``auto``.
+        video: number of that video.
+        first_id: detections of the files before it: ids go on over the files of a run.
 
     Raises:
         BadInput: `annotations_beyond_video`, `annotation_times_unclear`.
@@ -57,11 +67,12 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
             code="annotations_beyond_video",
             where=shown(outside[0]),
         )
-    masks: dict[int, tuple[Mask, ...]] = {}
+    masks: dict[SourceFrame, tuple[Mask, ...]] = {}
     for entry in annotations.entries:
         frame = frames[entry.key]
         if frame is not None and entry.masks:
-            masks[frame] = (*masks.get(frame, ()), *entry.masks)
+            source = SourceFrame(video, frame)
+            masks[source] = (*masks.get(source, ()), *entry.masks)
     flags = fitted.flags
     if outside:
         where = f"first key {shown(outside[0])}"
@@ -72,6 +83,8 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
         detections=tuple(
             replace(
                 detection,
+                id=detection.id + first_id,
+                video=video,
                 time_s=_seconds(entry.time, frames[entry.key], fitted.reading.clock, table),
                 source_index=frames[entry.key],
             )
@@ -80,7 +93,9 @@ def place(annotations: Annotations, table: FrameTable, convention: str = "auto")
         ),
         masks=masks,
         keys_outside=outside,
-        looked_at=tuple(sorted({frame for frame in frames.values() if frame is not None})),
+        looked_at=tuple(
+            SourceFrame(video, frame) for frame in sorted({frame for frame in frames.values() if frame is not None})
+        ),
         flags=flags,
         convention=fitted,
     )

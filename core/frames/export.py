@@ -30,15 +30,16 @@ def export_frames(
     max_pixels: int = MAX_FRAME_PIXELS,
     on_frame: Callable[[int], None] | None = None,
 ) -> None:
-    """Write the crop of every chosen frame to `folder`, as shown: fields joined and pixels square, else as decoded.
+    """Write the crop of every chosen frame of one video to `folder`.
 
-    Frames are found by counting, never by seeking, and each must have the hash of the frame table: a
-    detection can then not meet another frame than the one it was made on.
+    They are written as shown: fields joined and pixels square, else as decoded. Frames are found by counting, never by
+    seeking, and each must have the hash of the frame table: a detection can then not meet another frame than the one
+    it was made on.
 
     Args:
         video: the file that `table` was made from.
         table: its frame table.
-        chosen: frames to write, at most one per source frame.
+        chosen: frames of this video to write, at most one per source frame.
         crop: the part of them.
         folder: existing folder for ``0000.jpg`` ...
         jpeg_quality: 0-100.
@@ -48,8 +49,10 @@ def export_frames(
     Raises:
         StageFailed: the video is not the one of the table.
     """
-    by_source = {frame.source_index: frame.index for frame in chosen}
+    by_source = {frame.source.source_index: frame.index for frame in chosen}
     left = len(by_source)
+    if not left:
+        return
     with reopen_video(video, table.info, max_pixels=max_pixels) as reader:
         for shown in shown_frames(reader.frames(), table.info):
             frame = shown.decoded

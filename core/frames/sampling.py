@@ -6,10 +6,11 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import accumulate
 
 from core.errors import BadInput
 from core.flags import Flag, Severity
-from core.scene.frame import Role
+from core.scene.frame import Role, SourceFrame
 from core.settings.groups import FrameSettings
 from core.video.table import FrameTable
 
@@ -36,12 +37,24 @@ class ChosenFrame:
     """One frame of the run. `index` numbers the exported images."""
 
     index: int
-    source_index: int
+    source: SourceFrame
     role: Role
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """What may be chosen of one video."""
+
+    interval: Interval
+    annotated: Collection[int] = ()
+    """Its source frames with a detection; those outside the interval are left alone."""
+    reach: int = 0
+    """Source frames within which an annotated frame has a chosen one on either side, as far as the budget goes: alone
+    between distant samples it could not be matched with any. 0 adds none."""
+
+
 def clip_interval(table: FrameTable, settings: FrameSettings, overrides: Collection[str]) -> Interval:
-    """The used interval of the video.
+    """The used interval of one video.
 
     A bound that the user set (its name is in `overrides`) must lie within the video. A preset's bounds
     are cut to it; when that leaves under `MIN_CLIPPED_S` seconds, the preset's bounds are dropped.
@@ -107,31 +120,39 @@ def sample_uniformly(first: int, last: int, count: int) -> list[int]:
     return [first + (2 * i * (last - first) + steps) // (2 * steps) for i in range(count)]
 
 
-def choose_frames(
-    interval: Interval, annotated: Collection[int], settings: FrameSettings, reach: int = 0
-) -> list[ChosenFrame]:
+def choose_frames(stretches: Sequence[Stretch], settings: FrameSettings) -> list[ChosenFrame]:
     """Sampled and annotated frames and neighbours by time, then the annotated ones that the budget leaves over.
 
+    Several videos are sampled as if the used parts followed each other without a gap, so that each gets frames in
+    proportion to the length of its part; the budget is one for all.
+
     Args:
-        interval: the used part of the video.
-        annotated: source frames with a detection; those outside the interval are left alone.
+        stretches: of every video, in order.
         settings: count, include_annotated, max_count.
-        reach: source frames within which an annotated frame has a chosen one on either side, as far as the budget
-            goes: alone between distant samples it could not be matched with any. 0 adds none.
 
     Returns:
-        Frames of the search numbered by time from 0 (roles `sampled`, `annotated`, `both`, `neighbour`), followed by
-        those to register afterwards (role `added`), by time too.
+        Frames of the search numbered by time from 0, one video after the other (roles `sampled`, `annotated`, `both`,
+        `neighbour`), followed by those to register afterwards (role `added`), by time too.
     """
-    sampled = sample_uniformly(interval.first, interval.last, settings.count)
-    wanted: set[int] = set()
+    sampled = _sample_over(stretches, settings.count)
+    wanted: set[SourceFrame] = set()
     if settings.include_annotated:
-        wanted = {i for i in annotated if interval.first <= i <= interval.last}
+        wanted = {
+            SourceFrame(video, i)
+            for video, one in enumerate(stretches)
+            for i in one.annotated
+            if one.interval.first <= i <= one.interval.last
+        }
     extra = sorted(wanted.difference(sampled))
     room = max(0, settings.max_count - len(sampled))
     taken = _spread(extra, room)
     known = {*sampled, *taken}
-    neighbours = set(_spread(_missing_neighbours(known, wanted & known, interval, reach), max(0, room - len(taken))))
+    missing = [
+        SourceFrame(video, i)
+        for video, one in enumerate(stretches)
+        for i in _missing_neighbours(_of(video, known), _of(video, wanted & known), one.interval, one.reach)
+    ]
+    neighbours = set(_spread(missing, max(0, room - len(taken))))
     search = sorted(known | neighbours)
     in_sample = set(sampled)
     chosen: list[ChosenFrame] = []
@@ -143,6 +164,23 @@ def choose_frames(
     for source in sorted(set(extra).difference(taken)):
         chosen.append(ChosenFrame(len(chosen), source, Role.ADDED))
     return chosen
+
+
+def _sample_over(stretches: Sequence[Stretch], count: int) -> list[SourceFrame]:
+    """`sample_uniformly` over the used parts of all videos, one after the other."""
+    sampled, begin = [], 0
+    ends = list(accumulate(one.interval.n_frames for one in stretches))
+    chosen = sample_uniformly(0, ends[-1] - 1, count)
+    for video, (one, end) in enumerate(zip(stretches, ends, strict=True)):
+        own = chosen[bisect_left(chosen, begin) : bisect_left(chosen, end)]
+        sampled += [SourceFrame(video, one.interval.first + position - begin) for position in own]
+        begin = end
+    return sampled
+
+
+def _of(video: int, frames: Collection[SourceFrame]) -> list[int]:
+    """Numbers in their video of the frames that are of it."""
+    return [frame.source_index for frame in frames if frame.video == video]
 
 
 def _missing_neighbours(chosen: Collection[int], centers: Collection[int], interval: Interval, reach: int) -> list[int]:
@@ -158,7 +196,7 @@ def _missing_neighbours(chosen: Collection[int], centers: Collection[int], inter
     return sorted(missing)
 
 
-def _spread(items: Sequence[int], count: int) -> list[int]:
+def _spread(items: Sequence[SourceFrame], count: int) -> list[SourceFrame]:
     """At most `count` of `items`, evenly by rank."""
     if count == 0 or not items:
         return []

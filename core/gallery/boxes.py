@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from core.gallery.palette import RGB
 from core.scene.detection import DetectionRow, Outcome
+from core.scene.frame import SourceFrame
 
 U8 = NDArray[np.uint8]
 Plate = tuple[int, int, int, int]
@@ -21,23 +22,24 @@ _PLACE: RGB = (255, 120, 90)
 _MAX_LABEL = 28
 
 
-def frame_file(source_index: int) -> str:
-    """Name of the picture of a frame of the video."""
-    return f"frame_{source_index:06d}.jpg"
+def frame_file(source: SourceFrame) -> str:
+    """Name of the picture of a frame of a video."""
+    of_video = f"{source.video}_" if source.video else ""
+    return f"frame_{of_video}{source.source_index:06d}.jpg"
 
 
 @dataclass(frozen=True)
 class FrameBoxes:
-    """One frame of the video and the detections on it."""
+    """One frame of a video and the detections on it."""
 
-    source_index: int
+    source: SourceFrame
     time_s: float
     rows: tuple[DetectionRow, ...]
 
     @property
     def file_name(self) -> str:
         """Name of its picture."""
-        return frame_file(self.source_index)
+        return frame_file(self.source)
 
     @property
     def best_score(self) -> float:
@@ -45,26 +47,26 @@ class FrameBoxes:
         return max((row.score or 0.0 for row in self.rows), default=0.0)
 
 
-def group_by_frame(rows: Sequence[DetectionRow], source_index: Mapping[int, int | None]) -> list[FrameBoxes]:
-    """Frames with detections in the order of the video; `source_index` is by detection id, None = no frame."""
-    groups: dict[int, list[DetectionRow]] = {}
+def group_by_frame(rows: Sequence[DetectionRow], sources: Mapping[int, SourceFrame | None]) -> list[FrameBoxes]:
+    """Frames with detections in the order of the videos; `sources` is by detection id, None = no frame."""
+    groups: dict[SourceFrame, list[DetectionRow]] = {}
     for row in rows:
-        source = source_index[row.id]
+        source = sources[row.id]
         if source is not None:
             groups.setdefault(source, []).append(row)
     return [FrameBoxes(source, own[0].time_s, tuple(own)) for source, own in sorted(groups.items())]
 
 
 def choose_frames(frames: Sequence[FrameBoxes], limit: int) -> list[FrameBoxes]:
-    """At most `limit` frames, in the order of the video.
+    """At most `limit` frames, in the order of the videos.
 
     The best-scored frame of every defect and then of every label come first, then all others by their best
     score; the earlier of two equal frames is taken.
     """
     if len(frames) <= limit:
         return list(frames)
-    ranked = sorted(frames, key=lambda frame: (-frame.best_score, frame.source_index))
-    chosen: dict[int, FrameBoxes] = {}
+    ranked = sorted(frames, key=lambda frame: (-frame.best_score, frame.source))
+    chosen: dict[SourceFrame, FrameBoxes] = {}
     for name in ("defect_id", "label"):
         best: dict[object, tuple[float, FrameBoxes]] = {}
         for frame in frames:
@@ -73,10 +75,10 @@ def choose_frames(frames: Sequence[FrameBoxes], limit: int) -> list[FrameBoxes]:
                 if key is not None and (key not in best or score > best[key][0]):
                     best[key] = (score, frame)
         for _, frame in sorted(best.values(), key=lambda entry: -entry[0]):
-            chosen.setdefault(frame.source_index, frame)
+            chosen.setdefault(frame.source, frame)
     for frame in ranked:
-        chosen.setdefault(frame.source_index, frame)
-    return sorted(list(chosen.values())[:limit], key=lambda frame: frame.source_index)
+        chosen.setdefault(frame.source, frame)
+    return sorted(list(chosen.values())[:limit], key=lambda frame: frame.source)
 
 
 def draw_boxes(rgb: U8, rows: Sequence[DetectionRow], colors: Mapping[str, RGB]) -> U8:

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow, Extent, Sighting
-from core.scene.frame import RunFrames
+from core.scene.frame import RunFrames, SourceFrame
 
 _UNITS = {MODEL_UNIT: "model units"}
 """Units of an extent as people read them, where that differs."""
+
+
+class Instant(NamedTuple):
+    """A time in one of the videos; in order, instants are those of one video after the other."""
+
+    video: int
+    time_s: float
 
 
 @dataclass(frozen=True)
 class BestFrame:
     """The view that shows a defect best: the first of its `frames` in defects.json."""
 
-    source_index: int
+    source: SourceFrame
     time_s: float
     place: tuple[float, float] | None
     """Where the defect appears, normalised on the source frame; None by rules that do not tell."""
@@ -32,8 +40,10 @@ class DefectLine:
     """Extent in `unit`; None = unknown."""
     size_sigma: float | None
     unit: str
-    start_s: float | None
-    end_s: float | None
+    start: Instant | None
+    """When it was first seen; None without a visit."""
+    end: Instant | None
+    """When it was last seen."""
     visits: int
     """Events: times that it came into sight."""
     n_detections: int
@@ -74,8 +84,8 @@ def _line(record: DefectRecord, visits: Sequence[EventRow], frames: RunFrames) -
         size=extent.value,
         size_sigma=extent.sigma,
         unit=extent.unit,
-        start_s=min((event.start_s for event in visits), default=None),
-        end_s=max((event.end_s for event in visits), default=None),
+        start=min((Instant(event.video, event.start_s) for event in visits), default=None),
+        end=max((Instant(event.video, event.end_s) for event in visits), default=None),
         visits=len(visits),
         n_detections=len(record.detections),
         n_frames=record.persistence.k,
@@ -89,4 +99,4 @@ def _best(views: Sequence[Sighting], frames: RunFrames) -> BestFrame | None:
     if not views:
         return None
     frame = frames[views[0].frame_index]
-    return BestFrame(frame.source_index, frame.time_s, views[0].at)
+    return BestFrame(frame.source, frame.time_s, views[0].at)

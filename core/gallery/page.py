@@ -33,6 +33,7 @@ def gallery_page(
     defects: Sequence[DefectLine],
     colors: Mapping[str, RGB],
     evidence: Sequence[Evidence] = (),
+    n_videos: int = 1,
 ) -> str:
     """The whole page as one string.
 
@@ -43,6 +44,7 @@ def gallery_page(
         defects: rows of the table, in its order; a best frame has a picture beside the page.
         colors: by label, as drawn in the pictures.
         evidence: of the defects, each with a picture beside the page; empty by rules that make none.
+        n_videos: videos of the run; where there are several, frames and times name theirs.
     """
     mapped = sum(row.outcome == Outcome.MAPPED for row in rows)
     script = _asset("gallery.js").strip()
@@ -62,6 +64,7 @@ def gallery_page(
         colors=colors,
         reasons=REASONS,
         frame_file=frame_file,
+        n_videos=n_videos,
     )
 
 

@@ -9,6 +9,8 @@ from typing import Any
 
 from core.json_files import read_json, write_json
 from core.scene.detection import Detection, DetectionRow, Mask
+from core.scene.frame import SourceFrame
+from core.videos import count_videos, folder_of_video, unless_first
 
 _DETECTIONS = "detections.json"
 """Of `annotations` the detections as read, of `map_defects` and `timeline` the rows of the published table."""
@@ -19,8 +21,9 @@ _LOOKED_AT = "looked_at.json"
 def write_annotations(
     folder: Path,
     detections: Iterable[Detection],
-    masks: Mapping[int, Sequence[Mask]],
-    looked_at: Iterable[int],
+    masks: Mapping[SourceFrame, Sequence[Mask]],
+    looked_at: Iterable[SourceFrame],
+    n_videos: int = 1,
 ) -> None:
     """Write the result of `annotations`.
 
@@ -29,10 +32,16 @@ def write_annotations(
         detections: by id.
         masks: by source frame.
         looked_at: source frames that have a key, with detections or without.
+        n_videos: videos of the run.
     """
-    _write(folder / _DETECTIONS, [detection.to_dict() for detection in detections])
-    _write(folder / _MASKS, {str(i): [dict(mask.__dict__) for mask in masks[i]] for i in sorted(masks)})
-    _write(folder / _LOOKED_AT, list(looked_at))
+    _write(folder / _DETECTIONS, [unless_first(detection.to_dict()) for detection in detections])
+    seen = sorted(looked_at)
+    for video in range(n_videos):
+        own = folder_of_video(folder, video)
+        own.mkdir(exist_ok=True)
+        marked = sorted(source for source in masks if source.video == video)
+        _write(own / _MASKS, {str(s.source_index): [dict(mask.__dict__) for mask in masks[s]] for s in marked})
+        _write(own / _LOOKED_AT, [source.source_index for source in seen if source.video == video])
 
 
 def read_detections(folder: Path) -> list[Detection]:
@@ -40,18 +49,24 @@ def read_detections(folder: Path) -> list[Detection]:
     return [Detection.from_dict(row) for row in read_json(folder / _DETECTIONS)]
 
 
-def read_masks(folder: Path) -> dict[int, tuple[Mask, ...]]:
+def read_masks(folder: Path) -> dict[SourceFrame, tuple[Mask, ...]]:
     """Masks by source frame, from the result of `annotations`."""
-    rows = read_json(folder / _MASKS)
     return {
-        int(index): tuple(Mask(mask["label"], tuple((x, y) for x, y in mask["polygon"])) for mask in masks)
-        for index, masks in rows.items()
+        SourceFrame(video, int(index)): tuple(
+            Mask(mask["label"], tuple((x, y) for x, y in mask["polygon"])) for mask in masks
+        )
+        for video in range(count_videos(folder))
+        for index, masks in read_json(folder_of_video(folder, video) / _MASKS).items()
     }
 
 
-def read_looked_at(folder: Path) -> list[int]:
+def read_looked_at(folder: Path) -> list[SourceFrame]:
     """Source frames that the detector saw, from the result of `annotations`."""
-    return [int(index) for index in read_json(folder / _LOOKED_AT)]
+    return [
+        SourceFrame(video, int(index))
+        for video in range(count_videos(folder))
+        for index in read_json(folder_of_video(folder, video) / _LOOKED_AT)
+    ]
 
 
 def write_rows(folder: Path, rows: Iterable[DetectionRow]) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from core.json_files import read_json
 from core.scene.frame import Crop, RunFrames, frames_of, image_name
+from core.videos import unless_first
 
 _FRAMES = "frames.json"
 _DAMAGED = "damaged.json"
@@ -18,7 +19,7 @@ _REGISTERED = "registered.json"
 
 def write_frames(folder: Path, frames: RunFrames, crop: Crop, damaged: Sequence[int] = ()) -> None:
     """Write the frame table of the run, the indices of its damaged pictures and the part that was exported."""
-    rows = [frame.to_dict() for frame in frames]
+    rows = [unless_first(frame.to_dict()) for frame in frames]
     (folder / _DAMAGED).write_text(json.dumps(list(damaged)) + "\n", encoding="utf-8")
     (folder / _FRAMES).write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     (folder / _CROP).write_text(json.dumps(crop.to_dict()) + "\n", encoding="utf-8")

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from core.geometry.boxes import Box, in_box
 from core.io.sparse import open_model
 from core.scene.detection import Detection
-from core.scene.frame import Crop
+from core.scene.frame import Crop, SourceFrame
 
 if TYPE_CHECKING:
     import pycolmap
@@ -70,7 +70,10 @@ def box_in_crop_px(box: Box, crop: Crop, box_frame: Literal["source", "crop"]) -
 
 
 def boxes_by_frame(
-    detections: Sequence[Detection], looked: Iterable[int], index_of_source: Mapping[int, int], crop: Crop
+    detections: Sequence[Detection],
+    looked: Iterable[SourceFrame],
+    index_of_source: Mapping[SourceFrame, int],
+    crop: Crop,
 ) -> dict[int, list[tuple[Box, str]]]:
     """Boxes (crop pixels) and labels by frame index, for all frames that the detector saw.
 
@@ -85,7 +88,7 @@ def boxes_by_frame(
         if source in index_of_source:
             found.setdefault(index_of_source[source], [])
     for detection in detections:
-        index = index_of_source.get(-1 if detection.source_index is None else detection.source_index)
+        index = None if detection.source is None else index_of_source.get(detection.source)
         if index is not None:
             found.setdefault(index, []).append((box_in_crop_px(detection.box, crop, "source"), detection.label))
     return dict(sorted(found.items()))

@@ -84,7 +84,7 @@ def place_on_surface(
     estimated: dict[int, tuple[Sight, PlacementMethod, Reason]] = {}
     for number, detection in enumerate(detections):
         samples = _samples(detection, scene)
-        index = None if detection.source_index is None else frames.index_of_source.get(detection.source_index)
+        index = None if detection.source is None else frames.index_of_source.get(detection.source)
         view = None if index is None else scene.views.row(index)
         if detection.source_index is None:
             observations[number] = _without(unplaced_row(detection, Reason.NO_FRAME), detection)
@@ -182,8 +182,8 @@ def _without_pose(
                 moved = _moved(sight, carried, scene, view)
                 if len(moved.samples.xy):
                     return moved, PlacementMethod.PROPAGATED
-    view_times = np.array([frames.time_of_index[int(i)] for i in scene.views.frame_index])
-    pose = between(scene.views, view_times, detection.time_s, reach_s) if len(view_times) > 2 else None
+    view_times = np.array([frames.moment_of_index[int(i)] for i in scene.views.frame_index])
+    pose = between(scene.views, view_times, detection.moment_s, reach_s) if len(view_times) > 2 else None
     if pose is None or pose[2] > MAX_ERROR_PX:
         return None
     R, center, _ = pose
@@ -194,7 +194,7 @@ def _sight_like(number: int, detection: Detection, samples: Footprint, scene: Sc
     """A sight that still lacks its pose."""
     box = box_in_crop_px(detection.box, scene.crop, "source")
     registered = scene.views.frame_index.tolist()
-    near = min(registered, key=lambda frame: abs(frames.time_of_index[frame] - detection.time_s), default=-1)
+    near = min(registered, key=lambda frame: abs(frames.moment_of_index[frame] - detection.moment_s), default=-1)
     return Sight(number, detection.label, detection.score, box, samples, np.zeros(3), np.eye(3), None, near)
 
 
@@ -223,7 +223,7 @@ def _estimates(
     results = cast_sights(scene, [sight for sight, _, _ in estimated.values()])
     for (number, (_, rung, reason)), cast in zip(estimated.items(), results, strict=True):
         detection = detections[number]
-        index = frames.index_of_source.get(-1 if detection.source_index is None else detection.source_index)
+        index = None if detection.source is None else frames.index_of_source.get(detection.source)
         if isinstance(cast, Missed):
             found[number] = _without(unplaced_row(detection, reason, index), detection)
         else:

@@ -98,8 +98,18 @@ def dense_enough(extra: PairTable, extra_density: F64, table: PairTable, density
     return enough
 
 
-def positions(times_s: Sequence[float], n_search: int) -> F64:
-    """(n,) place of every frame in the sequence: its index, and for frames added later where their time falls."""
+def positions(times_s: Sequence[float], n_search: int, videos: Sequence[int] = ()) -> F64:
+    """(n,) place of every frame in the sequence: its index, and for frames added later where their time falls.
+
+    Args:
+        times_s: (n,) times on one axis.
+        n_search: frames of the sequence.
+        videos: (n,) video of every frame; none = all are of one. A frame added later stays among those of its own.
+    """
     order = np.arange(len(times_s), dtype=np.float64)
     order[n_search:] = np.interp(times_s[n_search:], times_s[:n_search], order[:n_search])
+    for added in range(n_search, len(videos)):
+        own = [frame for frame in range(n_search) if videos[frame] == videos[added]]
+        if own:
+            order[added] = np.clip(order[added], own[0], own[-1])
     return order

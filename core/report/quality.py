@@ -87,6 +87,7 @@ def build_quality(
         "lost": losses(detections),
         "support": support,
         "time_convention": record.facts("annotations").get("time_convention"),
+        **_of_several_videos(record),
         "registration": _registration(record),
         "models": _models(record),
         "reprojection_error": _reprojection(record),
@@ -128,12 +129,25 @@ def _notes(record: RunRecord) -> list[str]:
     return notes
 
 
+def _of_several_videos(record: RunRecord) -> Document:
+    """What is told of each video where there are several: how its keys were read, and its share of the frames."""
+    if len(record.facts("probe").get("videos", ())) < 2:
+        return {}
+    registered = set(record.tables.registered)
+    videos = []
+    for number, facts in enumerate(record.facts("probe")["videos"]):
+        own = [frame.index for frame in record.tables.frames if frame.video == number]
+        found = len(registered.intersection(own))
+        videos.append({"video": number, **facts, "frames": len(own), "registered": found})
+    return {"time_conventions": record.facts("annotations").get("time_conventions"), "videos": videos}
+
+
 def _registration(record: RunRecord) -> dict[str, object]:
     """Registered shares, of the frames offered and of all frames of the video."""
     offered, registered = len(record.tables.frames), len(record.tables.registered)
     frames, registered_set = record.tables.frames, set(record.tables.registered)
-    annotated = {row.source_index for row in record.tables.detections if row.source_index is not None}
-    seen = {frame.source_index for frame in frames if frame.index in registered_set}
+    annotated = {row.source for row in record.tables.detections if row.source is not None}
+    seen = {frame.source for frame in frames if frame.index in registered_set}
     in_video = record.facts("probe").get("n_frames")
     return {
         "frames_in_video": in_video,

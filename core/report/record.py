@@ -76,7 +76,7 @@ class RunRecord:
     """Every task of the plan, in its order."""
     tables: RunTables = field(default_factory=RunTables)
     inputs: Mapping[str, str] = field(default_factory=dict)
-    """SHA-256 (hex) of the input files by role: ``video``, ``annotations``."""
+    """SHA-256 (hex) of the input files by role: ``video``, ``annotations``, of further videos ``video_1`` and so on."""
     versions: Mapping[str, str] = field(default_factory=dict)
     """Versions of this program and of the libraries that shape results."""
     failed_stage: str = ""

@@ -47,7 +47,7 @@ def build_summary(
 
 
 def _frame(record: RunRecord) -> dict[str, object]:
-    """The video: size of its frames, the part of them that was used, px: x0, y0, x1, y1 (half open), and its length."""
+    """The videos: size of the frames, the part of them that was used, px: x0, y0, x1, y1 (half open), and length."""
     facts, video = record.facts("frames"), record.facts("probe")
     return {
         "width": facts.get("source_width"),
@@ -55,6 +55,7 @@ def _frame(record: RunRecord) -> dict[str, object]:
         "crop": facts.get("crop"),
         "n_frames": video.get("n_frames"),
         "duration_s": video.get("duration_s"),
+        **({"videos": video["videos"]} if "videos" in video else {}),
     }
 
 

@@ -45,9 +45,9 @@ class EventRow:
     label: str
     """Most frequent label of its detections."""
     start_s: float
-    """Time of its first detection, in seconds from the first frame."""
+    """Time of its first detection, in seconds from the first frame of its video."""
     end_s: float
-    """Time of its last detection, in seconds from the first frame."""
+    """Time of its last detection, in seconds from the first frame of its video."""
     n_detections: int
     """Its detections."""
     n_frames: int
@@ -62,6 +62,8 @@ class EventRow:
     """Largest distance of one of its detections from the mean place, in units of the model."""
     confidence: float | None
     """Probability that the defect is real and its place right."""
+    video: int = 0
+    """Number of the video that shows it, from 0 in the order given."""
 
     def to_dict(self) -> JsonObject:
         """Flat JSON form, keys in the order of the columns."""

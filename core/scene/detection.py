@@ -10,6 +10,8 @@ from typing import Any
 
 from core.geometry.boxes import Box
 from core.json_files import JsonObject
+from core.scene.frame import SourceFrame
+from core.videos import moment
 
 Polygon = tuple[tuple[float, float], ...]
 """At least three corners (x, y)."""
@@ -42,7 +44,19 @@ class Detection:
     """Its own outline, or that of the mask that fits it."""
     track_id: str | int | None = None
     source_index: int | None = None
-    """Decoded frame of the video that shows it; None where the key lies outside the video, or is not yet put on it."""
+    """Decoded frame of its video that shows it; None where the key lies outside the video, or is not yet put on it."""
+    video: int = 0
+    """Number of the video that its file is of, from 0 in the order given."""
+
+    @property
+    def source(self) -> SourceFrame | None:
+        """The frame of which video shows it; None where none does."""
+        return None if self.source_index is None else SourceFrame(self.video, self.source_index)
+
+    @property
+    def moment_s(self) -> float:
+        """Its time on the one axis of all videos (`core.videos.moment`)."""
+        return moment(self.video, self.time_s)
 
     def to_dict(self) -> JsonObject:
         """JSON form, keys in the order of the fields."""
@@ -153,6 +167,13 @@ class DetectionRow:
     """Record of defects.json that it belongs to."""
     model: int | None
     """Number of the model whose world frame holds the place."""
+    video: int = 0
+    """Number of the video that its key is of, from 0 in the order given."""
+
+    @property
+    def moment_s(self) -> float:
+        """Its time on the one axis of all videos (`core.videos.moment`)."""
+        return moment(self.video, self.time_s)
 
     @property
     def box(self) -> Box:
@@ -190,6 +211,7 @@ def _row(detection: Detection, **found: Any) -> DetectionRow:
         **{"box_x1": x1, "box_y1": y1, "box_x2": x2, "box_y2": y2},
         **dict.fromkeys(("frame_index", "reason", "rung", "x", "y", "z", "confidence", "blade", "defect_id", "model")),
         "support_points": 0,
+        "video": detection.video,
     }
     return DetectionRow(**{**values, **found})
 
@@ -242,7 +264,7 @@ def unplaced_row(detection: Detection, reason: Reason, frame_index: int | None =
 
 
 def rows_without_model(
-    detections: Sequence[Detection], index_of_source: Mapping[int, int] | None = None
+    detections: Sequence[Detection], index_of_source: Mapping[SourceFrame, int] | None = None
 ) -> list[DetectionRow]:
     """Rows for a run that has no model: every detection unplaced, none dropped.
 
@@ -250,8 +272,9 @@ def rows_without_model(
     """
     rows = []
     for detection in detections:
-        frame = (index_of_source or {}).get(-1 if detection.source_index is None else detection.source_index)
-        if detection.source_index is None:
+        source = detection.source
+        frame = (index_of_source or {}).get(source) if source is not None else None
+        if source is None:
             rows.append(unplaced_row(detection, Reason.NO_FRAME))
         elif frame is not None:
             rows.append(unplaced_row(detection, Reason.FRAME_NOT_REGISTERED, frame))

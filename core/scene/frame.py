@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 from core.json_files import JsonObject
+from core.videos import moment
 
 
 class Role(StrEnum):
@@ -27,24 +29,40 @@ class Role(StrEnum):
     """Annotated as well, but beyond the budget of the search: registered afterwards."""
 
 
+class SourceFrame(NamedTuple):
+    """A decoded frame of one of the videos; in order, frames are those of one video after the other."""
+
+    video: int
+    """Number of the video, from 0 in the order given."""
+    source_index: int
+    """Decoded frame of that video, from 0."""
+
+
 @dataclass(frozen=True)
 class Frame:
     """One frame of the run; the fields are the keys of its JSON form, in order."""
 
     index: int
-    """Number of the frame, from 0 by time, which names its image and counts in windows; frames registered afterwards
-    continue the numbers."""
+    """Number of the frame, from 0 by time, which names its image and counts in windows; it runs on over the videos, and
+    frames registered afterwards continue the numbers."""
     source_index: int
-    """Decoded frame of the video, from 0."""
+    """Decoded frame of its video, from 0."""
     pts: int
     """Presentation time in the stream's time base."""
     time_s: float
-    """Seconds from the first frame of the video, by its presentation time."""
+    """Seconds from the first frame of its video, by its presentation time."""
     sha256: str
     """SHA-256 of the decoded RGB24 frame before deinterlacing, making its pixels square, and
     cropping."""
     role: Role
     """Why it takes part: `sampled`, `annotated`, `both`, `neighbour` or `added`."""
+    video: int = field(default=0, kw_only=True)
+    """Number of its video, from 0 in the order given."""
+
+    @property
+    def source(self) -> SourceFrame:
+        """Which frame of which video it is."""
+        return SourceFrame(self.video, self.source_index)
 
     def to_dict(self) -> JsonObject:
         """JSON form."""
@@ -86,29 +104,34 @@ class RunFrames:
         return self.frames[index]
 
     @cached_property
-    def index_of_source(self) -> Mapping[int, int]:
-        """Index of each frame of the video that takes part."""
-        return {frame.source_index: frame.index for frame in self.frames}
+    def index_of_source(self) -> Mapping[SourceFrame, int]:
+        """Index of each frame of the videos that takes part."""
+        return {frame.source: frame.index for frame in self.frames}
 
     @cached_property
-    def time_of_index(self) -> Mapping[int, float]:
-        """Time of each frame, s."""
-        return {frame.index: frame.time_s for frame in self.frames}
+    def moment_of_index(self) -> Mapping[int, float]:
+        """Time of each frame on the one axis of all videos (`core.videos.moment`), s."""
+        return dict(enumerate(self.moments_s))
 
     @property
-    def times_s(self) -> list[float]:
-        """Times in the order of the indices, s."""
-        return [frame.time_s for frame in self.frames]
+    def moments_s(self) -> list[float]:
+        """The same in the order of the indices."""
+        return [moment(frame.video, frame.time_s) for frame in self.frames]
+
+    @property
+    def videos(self) -> list[int]:
+        """Video of each frame, in the order of the indices."""
+        return [frame.video for frame in self.frames]
 
     @property
     def n_search(self) -> int:
         """Frames of the search: all but those that are registered afterwards."""
         return sum(frame.role != Role.ADDED for frame in self.frames)
 
-    def timed_by_rate(self, rate: Fraction) -> RunFrames:
-        """The same frames, each with its number in the video over the rate (frames per second) as its time."""
-        fps = float(rate)
-        return RunFrames(tuple(replace(frame, time_s=frame.source_index / fps) for frame in self.frames))
+    def timed_by_rate(self, rates: Sequence[Fraction]) -> RunFrames:
+        """The same frames, each with its number in its video over that video's rate (frames per second) as its time."""
+        fps = [float(rate) for rate in rates]
+        return RunFrames(tuple(replace(frame, time_s=frame.source_index / fps[frame.video]) for frame in self.frames))
 
 
 def frames_of(rows: Sequence[JsonObject]) -> RunFrames:

@@ -1,36 +1,76 @@
-"""Stage `annotations`: the annotation file checked, typed and put on frames."""
+"""Stage `annotations`: the annotation file of every video checked, typed and put on its frames."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
 from core.annotations.load import load_annotations
-from core.annotations.placed import place
+from core.annotations.model import Annotations
+from core.annotations.placed import PlacedAnnotations, place
 from core.annotations.summary import summarise
 from core.io.annotations import write_annotations
-from core.stage import StageResult, StageTask
-from core.video.table import FrameTable
+from core.stage import Facts, StageResult, StageTask
+from core.video.table import FrameTable, read_tables
+from core.videos import named, naming_video
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `detections.json`, `masks.json` and `looked_at.json`; `BadInput` when the file cannot be used.
+    """Write `detections.json`, and `masks.json` and `looked_at.json` of every video.
 
-    Without an annotation file all are empty.
+    A video without an annotation file has none of them. Each file's keys are read on the clock of its own video.
+
+    Raises:
+        BadInput: a file cannot be used.
     """
-    table, wanted = FrameTable.read(task.input("probe")), task.settings.input
-    annotations = load_annotations(task.annotations, (table.info.width, table.info.height), wanted.annotation_format)
-    task.report(1, 2, f"{len(annotations.entries)} time keys")
-    placed = place(annotations, table, wanted.time_convention)
-    write_annotations(task.out, placed.detections, placed.masks, placed.looked_at)
-    summary = summarise(annotations, placed)
-    return StageResult(
-        {
-            "format": summary.format,
-            "n_detections": summary.n_detections,
-            "n_keys": summary.n_keys,
-            "n_annotated_frames": summary.n_annotated_frames,
-            "n_without_frame": sum(d.source_index is None for d in placed.detections),
-            "labels": summary.detections_by_label,
-            "warnings": list(summary.warnings),
-            "time_convention": placed.convention.to_dict(),
-            "flags": [flag.to_dict() for flag in placed.flags],
-        }
+    tables, total = read_tables(task.input("probe")), len(task.recordings)
+    files: list[tuple[Annotations, PlacedAnnotations]] = []
+    for video, table in enumerate(tables):
+        with naming_video(video, total):
+            annotations = _read(task, video, table)
+            n_before = sum(len(placed.detections) for _, placed in files)
+            files.append((annotations, place(annotations, table, task.settings.input.time_convention, video, n_before)))
+        task.report(video + 1, total, named(f"{len(annotations.entries)} time keys", video, total))
+    placed = [one for _, one in files]
+    write_annotations(
+        task.out,
+        [detection for one in placed for detection in one.detections],
+        {source: masks for one in placed for source, masks in one.masks.items()},
+        [source for one in placed for source in one.looked_at],
+        total,
     )
+    return StageResult(_facts(files))
+
+
+def _read(task: StageTask, video: int, table: FrameTable) -> Annotations:
+    size = table.info.width, table.info.height
+    return load_annotations(task.recordings[video].annotations, size, task.settings.input.annotation_format)
+
+
+def _facts(files: Sequence[tuple[Annotations, PlacedAnnotations]]) -> Facts:
+    """Of all files together; what each says of its time keys beside it where there are several videos."""
+    total, summaries = len(files), [summarise(annotations, placed) for annotations, placed in files]
+    conventions = [placed.convention.to_dict() for _, placed in files]
+    labels = sum((Counter(summary.detections_by_label) for summary in summaries), Counter[str]())
+    told = next((video for video, (annotations, _) in enumerate(files) if annotations.entries), 0)
+    facts: Facts = {
+        "format": ", ".join(dict.fromkeys(summary.format for summary in summaries)),
+        "n_detections": sum(summary.n_detections for summary in summaries),
+        "n_keys": sum(summary.n_keys for summary in summaries),
+        "n_annotated_frames": sum(summary.n_annotated_frames or 0 for summary in summaries),
+        "n_without_frame": sum(d.source_index is None for _, placed in files for d in placed.detections),
+        "labels": dict(sorted(labels.items())),
+        "warnings": [
+            named(warning, video, total) for video, summary in enumerate(summaries) for warning in summary.warnings
+        ],
+        "time_convention": conventions[told],
+        "flags": [
+            replace(flag, where=named(flag.where, video, total)).to_dict()
+            for video, (_, placed) in enumerate(files)
+            for flag in placed.flags
+        ],
+    }
+    if total > 1:
+        facts["time_conventions"] = conventions
+    return facts

@@ -16,7 +16,7 @@ def run(task: StageTask) -> StageResult:
     """Write ``pairs.npz`` with the further pairs and ``dropped.json`` with the pairs over jumps."""
     frames = read_frames(task.input("frames"))
     n_search = frames.n_search
-    position = positions(frames.times_s, n_search)
+    position = positions(frames.moments_s, n_search, frames.videos)
     files = feature_files(folder for _, folder in task.fan_in("features"))
     keypoints = [read_features(files[index]).keypoints for index in range(len(frames))]
     camera = read_camera(task.input("camera"))

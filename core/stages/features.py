@@ -51,4 +51,4 @@ def _blade_masks(task: StageTask, frames: Path) -> Callable[[int], NDArray[np.bo
     """Mask of the blades on a frame; None for a frame without annotated blades, which keeps everything."""
     used, crop = read_frames(frames), read_crop(frames)
     masks = read_masks(task.input("annotations"))
-    return lambda index: blade_mask(masks.get(used[index].source_index, ()), crop)
+    return lambda index: blade_mask(masks.get(used[index].source, ()), crop)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -21,12 +21,14 @@ from core.io.surface import defect_mesh
 from core.io.timeline import read_defects, read_events
 from core.render import Renderer
 from core.report.load import join_detections
+from core.scene.frame import SourceFrame
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
 from core.task_key import stage_of
 from core.video.opening import reopen_video
-from core.video.shown import shown_frames
-from core.video.table import FrameTable
+from core.video.shown import ShownFrame, shown_frames
+from core.video.table import read_infos
+from core.videos import named
 from core.viewpoint import choose_two
 
 MIN_SUPPORT = 0.5
@@ -38,7 +40,7 @@ def run(task: StageTask) -> StageResult:
     settings = task.settings.gallery
     timelines = [folder for key, folder in sorted(task.inputs.items()) if stage_of(key) == "timeline"]
     rows = join_detections([read_rows(folder) for folder in timelines])
-    source = {one.id: one.source_index for one in read_detections(task.input("annotations"))}
+    source = {one.id: one.source for one in read_detections(task.input("annotations"))}
     frames = group_by_frame(rows, source)
     chosen = choose_frames(frames, settings.max_frames)
     colors = label_colors([row.label for row in rows])
@@ -50,12 +52,12 @@ def run(task: StageTask) -> StageResult:
     records = sorted(records, key=lambda record: rank[record.id])
     evidence = evidence_of(records, rows) if task.settings.mapping.method == "surface" else []
     pictures = _pictures(chosen, frames, defects)
-    evidence_at: dict[int, list[Evidence]] = {}
+    evidence_at: dict[SourceFrame, list[Evidence]] = {}
     for one in evidence:
-        evidence_at.setdefault(used[one.frame_index].source_index, []).append(one)
+        evidence_at.setdefault(used[one.frame_index].source, []).append(one)
     _write_frames(task, pictures, colors, evidence_at)
     _write_views(task)
-    page = gallery_page(chosen, len(frames), rows, defects, colors, evidence)
+    page = gallery_page(chosen, len(frames), rows, defects, colors, evidence, len(task.recordings))
     (task.out / "index.html").write_text(page, encoding="utf-8", newline="\n")
     return StageResult({"n_images": len(chosen), "n_frames": len(frames)})
 
@@ -71,15 +73,15 @@ class _Picture:
 
 def _pictures(
     chosen: Sequence[FrameBoxes], frames: Sequence[FrameBoxes], defects: Sequence[DefectLine]
-) -> dict[int, _Picture]:
+) -> dict[SourceFrame, _Picture]:
     """The chosen frames and the best frame of every defect, by source frame."""
-    boxes = {frame.source_index: frame for frame in chosen}
-    known = {frame.source_index: frame for frame in frames}
-    marks: dict[int, list[tuple[int, tuple[float, float]]]] = {}
+    boxes = {frame.source: frame for frame in chosen}
+    known = {frame.source: frame for frame in frames}
+    marks: dict[SourceFrame, list[tuple[int, tuple[float, float]]]] = {}
     for line in defects:
         if line.best is None:
             continue
-        at = line.best.source_index
+        at = line.best.source
         frame = boxes.setdefault(at, known.get(at) or FrameBoxes(at, line.best.time_s, ()))
         if line.best.place is not None and all(row.defect_id != line.number for row in frame.rows):
             marks.setdefault(at, []).append((line.number, line.best.place))
@@ -88,30 +90,38 @@ def _pictures(
 
 def _write_frames(
     task: StageTask,
-    pictures: Mapping[int, _Picture],
+    pictures: Mapping[SourceFrame, _Picture],
     colors: Mapping[str, RGB],
-    evidence: Mapping[int, Sequence[Evidence]],
+    evidence: Mapping[SourceFrame, Sequence[Evidence]],
 ) -> None:
-    """Decode the video once, in order, and write the frames with their boxes, and the evidence of defects."""
-    if not pictures and not evidence:
-        return
-    last = max([*pictures, *evidence])
+    """Decode every video once, in order, and write the frames with their boxes, and the evidence of defects."""
     quality = [cv2.IMWRITE_JPEG_QUALITY, task.settings.gallery.jpeg_quality]
-    info = FrameTable.read(task.input("probe")).info
-    with reopen_video(task.video, info, max_pixels=task.max_frame_pixels) as reader:
-        for shown in shown_frames(reader.frames(), info):
-            index = shown.decoded.index
-            picture = pictures.get(index)
-            if picture is not None:
-                drawn = draw_boxes(shown.rgb(), picture.boxes.rows, colors)
-                for number, place in picture.marks:
-                    drawn = draw_place(drawn, number, place)
-                _write_image(task, picture.boxes.file_name, drawn, quality)
-            for one in evidence.get(index, ()):
-                _write_image(task, one.file_name, draw_evidence(shown.rgb(), one), quality)
-            task.report(0.5 * index, last + 1, f"frame {index} of {last}")
-            if index >= last:
-                break
+    for source, shown in _decoded(task, [*pictures, *evidence]):
+        picture = pictures.get(source)
+        if picture is not None:
+            drawn = draw_boxes(shown.rgb(), picture.boxes.rows, colors)
+            for number, place in picture.marks:
+                drawn = draw_place(drawn, number, place)
+            _write_image(task, picture.boxes.file_name, drawn, quality)
+        for one in evidence.get(source, ()):
+            _write_image(task, one.file_name, draw_evidence(shown.rgb(), one), quality)
+
+
+def _decoded(task: StageTask, wanted: Collection[SourceFrame]) -> Iterator[tuple[SourceFrame, ShownFrame]]:
+    """Frames of every video up to the last wanted one of each."""
+    total = len(task.recordings)
+    for video, info in enumerate(read_infos(task.input("probe"))):
+        last = max((source.source_index for source in wanted if source.video == video), default=-1)
+        if last < 0:
+            continue
+        with reopen_video(task.recordings[video].video, info, max_pixels=task.max_frame_pixels) as reader:
+            for shown in shown_frames(reader.frames(), info):
+                index = shown.decoded.index
+                yield SourceFrame(video, index), shown
+                share = (video + index / (last + 1)) / total
+                task.report(0.5 * share, 1, named(f"frame {index} of {last}", video, total))
+                if index >= last:
+                    break
 
 
 def _write_views(task: StageTask) -> None:

@@ -21,7 +21,7 @@ from core.scene.methods import Placing, Support
 from core.stage import Facts, StageResult, StageTask
 from core.surface.ply import Mesh, read_mesh, write_cloud
 from core.thesis.placing import ThesisPlacing
-from core.video.table import read_info
+from core.video.table import read_infos
 
 
 def world_comments(task: StageTask) -> tuple[str, ...]:
@@ -75,7 +75,7 @@ def _by_support(task: StageTask) -> ThesisPlacing:
     settings, model_dir = task.settings.mapping, model_folder(task.input("extend"))
     frames = read_frames(task.input("frames"))
     if settings.time_rule == "average_rate":
-        frames = frames.timed_by_rate(read_info(task.input("probe")).average_rate)
+        frames = frames.timed_by_rate([info.average_rate for info in read_infos(task.input("probe"))])
 
     def read_model(indices: Sequence[int]) -> SparseModel:
         return read_sparse_model(model_dir, indices)

@@ -57,4 +57,4 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
 
 def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
     frames = read_frames(task.input("frames"))
-    return match_pairs(frames.times_s, frames.n_search, task.settings.matching.window)
+    return match_pairs(frames.moments_s, frames.n_search, task.settings.matching.window, frames.videos)

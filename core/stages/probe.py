@@ -1,41 +1,67 @@
-"""Stage `probe`: the video decoded once; its facts and its frame table."""
+"""Stage `probe`: every video decoded once; its facts and its frame table."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from core.flags import Flag, Severity
-from core.stage import StageResult, StageTask
+from core.stage import Facts, StageResult, StageTask
 from core.video.probe import probe_video
-from core.video.table import RATE_FROM, VideoInfo, colon_text, listed, rational_text
+from core.video.table import RATE_FROM, FrameTable, VideoInfo, colon_text, listed, rational_text
+from core.videos import folder_of_video, named, naming_video, require_one_size
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `video.json` and `table.csv`; `BadInput` when the video cannot be used."""
+    """Write `video.json` and `table.csv` of every video; `BadInput` when one cannot be used, or their sizes differ."""
+    infos: list[VideoInfo] = []
+    for video in range(len(task.recordings)):
+        with naming_video(video, len(task.recordings)):
+            table = _probe(task, video)
+        folder = folder_of_video(task.out, video)
+        folder.mkdir(exist_ok=True)
+        table.write(folder)
+        infos.append(table.info)
+        require_one_size([(info.width, info.height) for info in infos])
+    return StageResult(_facts(infos))
+
+
+def _probe(task: StageTask, video: int) -> FrameTable:
+    total, settings = len(task.recordings), task.settings.input
 
     def on_frame(done: int, declared: int) -> None:
-        task.report(done, max(done, declared), f"frame {done}")
+        share = done / max(done, declared)
+        task.report(video + share, total, named(f"frame {done}", video, total))
 
-    settings = task.settings.input
-    table = probe_video(
-        task.video,
+    return probe_video(
+        task.recordings[video].video,
         allow_truncated=settings.allow_truncated,
         stream=settings.video_stream,
         fps=settings.fps,
         max_pixels=task.max_frame_pixels,
         on_frame=on_frame,
     )
-    table.write(task.out)
-    info = table.info
-    return StageResult(
-        {
-            "n_frames": info.n_frames,
-            "width": info.width,
-            "height": info.height,
-            "average_rate": rational_text(info.average_rate),
-            "duration_s": info.duration_s,
-            "truncated": info.truncated,
-            "flags": [flag.to_dict() for flag in flags_of(info)],
-        }
-    )
+
+
+def _facts(infos: Sequence[VideoInfo]) -> Facts:
+    """Of all videos together, and of each where there are several."""
+    total, first = len(infos), infos[0]
+    facts: Facts = {
+        "n_frames": sum(info.n_frames for info in infos),
+        "width": first.width,
+        "height": first.height,
+        "average_rate": rational_text(first.average_rate),
+        "duration_s": sum(info.duration_s for info in infos),
+        "truncated": any(info.truncated for info in infos),
+        "flags": [
+            replace(flag, where=named(flag.where, video, total)).to_dict()
+            for video, info in enumerate(infos)
+            for flag in flags_of(info)
+        ],
+    }
+    if total > 1:
+        facts["videos"] = [{"n_frames": info.n_frames, "duration_s": info.duration_s} for info in infos]
+    return facts
 
 
 def flags_of(info: VideoInfo) -> list[Flag]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -77,7 +78,7 @@ def cluster_detections(rows: Sequence[DetectionRow], radius: float) -> list[Clus
     come back sorted by start time, so their positions are the renumbered ids.
     """
     growing: list[_Growing] = []
-    for row in sorted((row for row in rows if row.outcome == Outcome.MAPPED), key=lambda row: (row.time_s, row.id)):
+    for row in sorted((row for row in rows if row.outcome == Outcome.MAPPED), key=lambda row: (row.moment_s, row.id)):
         place = np.array((row.x, row.y, row.z), dtype=np.float64)
         chosen = _nearest(growing, place, radius)
         if chosen is None:
@@ -86,7 +87,7 @@ def cluster_detections(rows: Sequence[DetectionRow], radius: float) -> list[Clus
         chosen.rows.append(row)
         chosen.total = chosen.total + place
     clusters = [Cluster(tuple(cluster.rows)) for cluster in growing]
-    return sorted(clusters, key=lambda cluster: (cluster.start_s, cluster.rows[0].id))
+    return sorted(clusters, key=lambda cluster: (cluster.rows[0].moment_s, cluster.rows[0].id))
 
 
 def _nearest(growing: Sequence[_Growing], place: F64, radius: float) -> _Growing | None:
@@ -99,14 +100,23 @@ def _nearest(growing: Sequence[_Growing], place: F64, radius: float) -> _Growing
 
 
 def event_rows(clusters: Sequence[Cluster]) -> list[EventRow]:
-    """One event per cluster; `clusters` are sorted by start, ids are their positions."""
-    return [_event(number, cluster) for number, cluster in enumerate(clusters)]
+    """One event per cluster and video, by start; `clusters` are sorted by start, ids are positions.
+
+    The thesis has one video; the times of an event are of one.
+    """
+    parts = [
+        (Cluster(tuple(rows)), number)
+        for number, cluster in enumerate(clusters)
+        for _, rows in groupby(cluster.rows, key=lambda row: row.video)
+    ]
+    parts.sort(key=lambda part: (part[0].rows[0].moment_s, part[1]))
+    return [_event(event, number, part) for event, (part, number) in enumerate(parts)]
 
 
-def _event(number: int, cluster: Cluster) -> EventRow:
+def _event(event: int, number: int, cluster: Cluster) -> EventRow:
     x, y, z = (float(value) for value in cluster.centroid)
     return EventRow(
-        event_id=number,
+        event_id=event,
         defect_id=number,
         label=leading_label(cluster.rows),
         start_s=cluster.start_s,
@@ -118,6 +128,7 @@ def _event(number: int, cluster: Cluster) -> EventRow:
         z=z,
         radius=cluster.radius,
         confidence=None,
+        video=cluster.rows[0].video,
     )
 
 
@@ -150,6 +161,7 @@ def extent_of(supports: Sequence[F64]) -> Extent:
 
 def defect_records(
     clusters: Sequence[Cluster],
+    events: Sequence[EventRow],
     supports: Mapping[int, F64],
     sightings: Sequence[Sequence[Sighting]],
     faces: Sequence[Sequence[int]],
@@ -158,18 +170,26 @@ def defect_records(
 
     Args:
         clusters: sorted by start.
+        events: of all clusters.
         supports: (n, 3) support points by detection id.
         sightings: per cluster, the registered views that could see it, best first.
         faces: per cluster, its faces of the mesh.
     """
-    return [
-        _record(number, cluster, [supports[row.id] for row in cluster.rows], sightings[number], faces[number])
-        for number, cluster in enumerate(clusters)
-    ]
+    records = []
+    for number, cluster in enumerate(clusters):
+        own = tuple(event.event_id for event in events if event.defect_id == number)
+        support = [supports[row.id] for row in cluster.rows]
+        records.append(_record(number, cluster, own, support, sightings[number], faces[number]))
+    return records
 
 
 def _record(
-    number: int, cluster: Cluster, supports: Sequence[F64], seen: Sequence[Sighting], faces: Sequence[int]
+    number: int,
+    cluster: Cluster,
+    events: tuple[int, ...],
+    supports: Sequence[F64],
+    seen: Sequence[Sighting],
+    faces: Sequence[int],
 ) -> DefectRecord:
     detected = {row.frame_index for row in cluster.rows}
     x, y, z = (float(value) for value in cluster.centroid)
@@ -182,7 +202,7 @@ def _record(
         extent=extent_of(supports),
         confidence=None,
         persistence=Persistence(len(detected), len(detected | {sighting.frame_index for sighting in seen})),
-        events=(number,),
+        events=events,
         detections=tuple(row.id for row in cluster.rows),
         frames=tuple(replace(sighting, detected=sighting.frame_index in detected) for sighting in seen),
         faces=tuple(int(face) for face in faces),
@@ -216,7 +236,7 @@ class ThesisGrouping:
         return Grouped(
             rows=tuple(with_defect_ids(rows, clusters)),
             events=tuple(events),
-            defects=tuple(defect_records(clusters, supports, seen, faces)),
+            defects=tuple(defect_records(clusters, events, supports, seen, faces)),
             confidences=(),
             weight=coloring.weight,
             vertex_defect=vertex_defect,

@@ -59,7 +59,7 @@ class ThesisPlacing:
         self.report(1, 4, "reading the surface")
         mesh = self.read_surface()
         self.report(2, 4, "colouring the surface")
-        supported = sorted((p for p in placements if len(p.point_ids)), key=lambda p: (p.row.time_s, p.row.id))
+        supported = sorted((p for p in placements if len(p.point_ids)), key=lambda p: (p.row.moment_s, p.row.id))
         support = Support.of((p.row.id, p.point_ids, p.positions) for p in supported)
         write_coloring(folder, color_by_support(mesh, support, self.settings, self.threads), support)
         rows = tuple(placement.row for placement in placements)
@@ -76,13 +76,17 @@ def match_frames(
     earlier one is taken.
     """
     known = set(registered)
-    order = sorted((frame for frame in frames if frame.index in known), key=lambda frame: frame.time_s)
+    order = sorted(
+        (frame for frame in frames if frame.index in known), key=lambda frame: frames.moment_of_index[frame.index]
+    )
     asked = [d for d in detections if d.source_index is not None]
     if not order or not asked:
         return {}
-    times = [frame.time_s for frame in order]
-    nearest = [nearest_index(times, d.time_s) for d in asked]
-    return {d.id: order[k].index for d, k in zip(asked, nearest, strict=True) if abs(times[k] - d.time_s) < tolerance_s}
+    times = [frames.moment_of_index[frame.index] for frame in order]
+    nearest = [nearest_index(times, d.moment_s) for d in asked]
+    return {
+        d.id: order[k].index for d, k in zip(asked, nearest, strict=True) if abs(times[k] - d.moment_s) < tolerance_s
+    }
 
 
 def place_detections(
@@ -110,7 +114,7 @@ def place_detections(
     for detection in detections:
         frame = used.get(detection.id)
         if frame is None:
-            source = detection.source_index
+            source = detection.source
             own_frame = frames.index_of_source.get(source) if knows_own_frame and source is not None else None
             placements.append(_unplaced(detection, own_frame))
         else:

@@ -71,7 +71,7 @@ def find_defects(
     Args:
         observations: in input order, all of them.
         scene: of the model.
-        times_s: of its registered frames, by frame index.
+        times_s: of its registered frames on one axis of all videos (`core.videos.moment`), by frame index.
         doubts: warnings of the checks about the model.
     """
     looked = set(scene.views.frame_index[scene.frames.rows].tolist())
@@ -195,7 +195,7 @@ def event_rows(found: Found, times_s: Mapping[int, float]) -> list[EventRow]:
     for number, defect in enumerate(found.defects):
         for visit in defect.visits:
             own = [found.observations[k] for k in defect.members if found.observations[k].row.frame_index in visit]
-            rows.append((own[0].row.time_s, number, _event(number, defect, own, len(visit))))
+            rows.append((own[0].row.moment_s, number, _event(number, defect, own, len(visit))))
     rows.sort(key=lambda item: item[:2])
     return [replace(row, event_id=k) for k, (_, _, row) in enumerate(rows)]
 
@@ -216,6 +216,7 @@ def _event(number: int, defect: Defect, own: Sequence[Observation], n_frames: in
         z=float(middle[2]),
         radius=float(np.linalg.norm(places - middle, axis=1).max()),
         confidence=_combined(own, defect),
+        video=own[0].row.video,
     )
 
 

@@ -86,7 +86,7 @@ class SurfaceGrouping:
         """Instances, visits and confidences."""
         observations = read_observations(self.folder)
         self.report(1, 4, "telling defects apart")
-        times_s = self.frames.time_of_index
+        times_s = self.frames.moment_of_index
         found = find_defects(observations, self.scene, times_s, self.doubts)
         events = event_rows(found, times_s)
         self.report(2, 4, "colouring the surface")

@@ -72,7 +72,7 @@ def group_observations(observations: Sequence[Observation]) -> list[list[int]]:
 
 
 def _when(one: Observation) -> tuple[float, int]:
-    return one.row.time_s, one.row.id
+    return one.row.moment_s, one.row.id
 
 
 def _reach(one: Observation) -> float:
@@ -99,7 +99,8 @@ def _edges(observations: Sequence[Observation], places: F64, reach: F64) -> list
 
 def _allowed(a: Observation, b: Observation, reach: float) -> float:
     allowed = LINK_RADII * reach
-    if a.track_id is not None and a.track_id == b.track_id:
+    # Every file numbers its tracks by itself: equal ids of two videos are two tracks.
+    if a.track_id is not None and a.track_id == b.track_id and a.row.video == b.row.video:
         return SAME_TRACK * allowed
     if a.row.label != b.row.label:
         allowed *= OTHER_LABEL

@@ -57,7 +57,7 @@ def merge_alike(
         shares |= {pair: alike(*pair) for pair in shares if a in pair}
 
     def when(row: int) -> tuple[float, int]:
-        return observations[row].row.time_s, observations[row].row.id
+        return observations[row].row.moment_s, observations[row].row.id
 
     return sorted((sorted(group, key=when) for group in merged.values()), key=lambda group: when(group[0]))
 

@@ -12,6 +12,7 @@ from core.mapping.surface import Surface
 from core.scene.defect import Sighting
 from core.scene.frame import Crop
 from core.scene.views import Views
+from core.videos import video_of
 
 F64 = NDArray[np.float64]
 
@@ -65,19 +66,21 @@ def views_of_place(
 
 
 def visits(detected: Sequence[int], visible: Sequence[int], times_s: Mapping[int, float]) -> list[list[int]]:
-    """Frames with a detection of a defect, cut where it was out of sight in between.
+    """Frames with a detection of a defect, cut where it was out of sight in between, and between two videos.
 
     Args:
         detected: frame indices with a detection, by time.
         visible: frame indices that could see it.
-        times_s: of all registered frames by frame index.
+        times_s: of all registered frames by frame index, on one axis of all videos (`core.videos.moment`).
     """
     seen = set(visible) | set(detected)
     order = sorted(times_s, key=lambda frame: (times_s[frame], frame))
     position = {frame: k for k, frame in enumerate(order)}
     groups: list[list[int]] = []
     for frame in detected:
-        if groups and not _was_away(order[position[groups[-1][-1]] : position[frame] + 1], seen, times_s):
+        before = groups[-1][-1] if groups else frame
+        one_video = video_of(times_s[before]) == video_of(times_s[frame])
+        if groups and one_video and not _was_away(order[position[before] : position[frame] + 1], seen, times_s):
             groups[-1].append(frame)
         else:
             groups.append([frame])

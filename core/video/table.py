@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from core.errors import StageFailed
 from core.geometry.nearest import nearest_index
+from core.videos import count_videos, folder_of_video
 
 _INFO = "video.json"
 _TABLE = "table.csv"
@@ -102,8 +103,12 @@ class VideoInfo:
         return cls(**row)
 
 
-def read_info(folder: Path) -> VideoInfo:
-    """What is known of the video, from the result of `probe`."""
+def read_infos(folder: Path) -> list[VideoInfo]:
+    """What is known of every video, from the result of `probe`."""
+    return [_read_info(folder_of_video(folder, video)) for video in range(count_videos(folder))]
+
+
+def _read_info(folder: Path) -> VideoInfo:
     return VideoInfo.from_dict(json.loads((folder / _INFO).read_text(encoding="utf-8")))
 
 
@@ -162,7 +167,7 @@ class FrameTable:
     @classmethod
     def read(cls, folder: Path) -> FrameTable:
         """Read what `write` wrote; `StageFailed` when the two files do not belong together."""
-        info = read_info(folder)
+        info = _read_info(folder)
         with (folder / _TABLE).open(newline="", encoding="utf-8") as stream:
             rows = tuple(
                 FrameRow(int(r["index"]), int(r["pts"]), float(r["time_s"]), r["keyframe"] == "1", r["sha256"])
@@ -171,6 +176,11 @@ class FrameTable:
         if len(rows) != info.n_frames:
             raise StageFailed(f"frame table has {len(rows)} rows for {info.n_frames} frames", where="probe")
         return cls(info, rows)
+
+
+def read_tables(folder: Path) -> list[FrameTable]:
+    """The frame tables of all videos, from the result of `probe`."""
+    return [FrameTable.read(folder_of_video(folder, video)) for video in range(count_videos(folder))]
 
 
 def colon_text(ratio: Fraction) -> str:

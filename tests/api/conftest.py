@@ -55,7 +55,7 @@ class Backend:
         """An inspection as the API would have made it; its id is made from `name`, its video from it or `video`."""
         inspection_id = hashlib.md5(name.encode(), usedforsecurity=False).hexdigest()
         digest = hashlib.sha256((video or name).encode()).hexdigest()
-        files = InputFiles(f"inputs/{digest}/video", digest, None, None)
+        files = [InputFiles(f"inputs/{digest}/video", digest, None, None)]
         with self.db.write() as session:
             inspections = self.services.inspections
             inspections.create_in(

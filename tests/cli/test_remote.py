@@ -72,7 +72,7 @@ def test_submit_watch_and_download_the_sample(
     assert code == exits.DONE
     one = out.strip()
     row = backend.services.inspections.get(one)
-    assert row.files.video_sha256 == hashlib.sha256(VIDEO.read_bytes()).hexdigest()
+    assert row.files[0].video_sha256 == hashlib.sha256(VIDEO.read_bytes()).hexdigest()
     assert row.settings["matching"]["window"] == 8
     assert "blade 4" in call("status", one)[1]
     backend.work(one)

@@ -69,7 +69,9 @@ def _tables() -> RunTables:
         registered=[0, 1, 2, 3],
         mapped_rows=with_defect_ids(rows, clusters),
         timeline=event_rows(clusters),
-        defects=defect_records(clusters, supports, [[] for _ in clusters], [[] for _ in clusters]),
+        defects=defect_records(
+            clusters, event_rows(clusters), supports, [[] for _ in clusters], [[] for _ in clusters]
+        ),
     )
 
 

@@ -14,6 +14,7 @@ import pytest
 from core.errors import BadInput
 from core.settings import make_settings
 from core.stage import StageTask
+from core.videos import Recording
 from tests.core.making_videos import cut_to, every_ms, make_video, make_wav
 
 DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}
@@ -28,7 +29,7 @@ def run_stages(folder: Path, video: Path, annotations: Path | None, options: dic
     for name in ("probe", "annotations", "frames"):
         out = folder / "results" / name
         out.mkdir(parents=True)
-        task = StageTask(name, {}, settings, dict(inputs), dict(facts), video, annotations, out)
+        task = StageTask(name, {}, settings, dict(inputs), dict(facts), (Recording(video, annotations),), out)
         facts[name] = importlib.import_module(f"core.stages.{name}").run(task).facts
         inputs[name] = out
     return facts

@@ -72,7 +72,7 @@ def test_a_task_of_a_further_model_reads_its_own_models_results_first(tmp_path: 
     inputs = {name: tmp_path / name for name in ("frames", "extend", "extend@1", "depth@1/000", "depth/000")}
 
     def task(key: str, args: dict[str, Any]) -> StageTask:
-        return StageTask(key, args, make_settings(), inputs, {}, tmp_path, None, tmp_path)
+        return StageTask(key, args, make_settings(), inputs, {}, (), tmp_path)
 
     first, own = task("mesh", {}), task("mesh@1", {"piece": 1})
     assert (first.input("extend").name, own.input("extend").name, own.input("frames").name) == (

@@ -23,8 +23,12 @@ FULL = {"x0": 0.0, "y0": 0.0, "x1": 1.0, "y1": 1.0}
 
 
 def test_a_sound_input_is_described() -> None:
-    found = answer({"video": str(VIDEO), "annotations": str(ANNOTATIONS), "roi": FULL})
-    assert (found["video"]["width"], found["video"]["height"], found["video"]["codec"]) == (960, 720, "h264")
+    found = answer({"recordings": [{"video": str(VIDEO), "annotations": str(ANNOTATIONS)}], "roi": FULL})
+    assert (found["videos"][0]["width"], found["videos"][0]["height"], found["videos"][0]["codec"]) == (
+        960,
+        720,
+        "h264",
+    )
     assert found["n_detections"] == 90
 
 
@@ -39,7 +43,8 @@ def test_a_sound_input_is_described() -> None:
     ],
 )
 def test_what_is_wrong_is_named(change: dict[str, Any], code: str) -> None:
-    question: Any = {"video": str(VIDEO), "annotations": None, "roi": FULL, **change}
+    recording = {"video": str(VIDEO), "annotations": None, **{k: v for k, v in change.items() if k != "roi"}}
+    question: Any = {"recordings": [recording], "roi": change.get("roi", FULL)}
     found = answer(question)
     assert found["error"]["code"] == code
 
@@ -63,7 +68,7 @@ def test_a_header_beyond_a_limit_is_enough(
         pytest.fail("a frame was decoded")
 
     monkeypatch.setattr(VideoReader, "frames", decode)
-    found = answer({"video": str(video), "annotations": None, "roi": FULL, "limits": limits})
+    found = answer({"recordings": [{"video": str(video), "annotations": None}], "roi": FULL, "limits": limits})
     assert found["error"]["code"] == code
     message = str(found["error"]["message"])
     assert "at most" in message or "more than" in message
@@ -71,8 +76,8 @@ def test_a_header_beyond_a_limit_is_enough(
 
 def test_a_video_at_its_limits_is_taken() -> None:
     limits: LimitFields = {"max_frame_pixels": 960 * 720, "max_video_frames": 96, "max_video_seconds": 8.0}
-    found = answer({"video": str(VIDEO), "annotations": None, "roi": FULL, "limits": limits})
-    assert found["video"]["declared_frames"] == 96
+    found = answer({"recordings": [{"video": str(VIDEO), "annotations": None}], "roi": FULL, "limits": limits})
+    assert found["videos"][0]["declared_frames"] == 96
 
 
 def test_only_the_first_frames_are_decoded(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,12 +91,13 @@ def test_only_the_first_frames_are_decoded(monkeypatch: pytest.MonkeyPatch) -> N
             yield frame
 
     monkeypatch.setattr(VideoReader, "frames", counted)
-    answer({"video": str(VIDEO), "annotations": None, "roi": FULL})
+    answer({"recordings": [{"video": str(VIDEO), "annotations": None}], "roi": FULL})
     assert seen == [0, 1]
 
 
 def ask(**change: Any) -> subprocess.CompletedProcess[str]:
-    question: dict[str, Any] = {"video": str(VIDEO), "annotations": None, "roi": FULL, "parent": os.getpid()}
+    recording = {"video": str(VIDEO), "annotations": None}
+    question: dict[str, Any] = {"recordings": [recording], "roi": FULL, "parent": os.getpid()}
     question |= {"memory_bytes": 2 << 30, "seconds": 30, **change}
     words = [sys.executable, "-m", "core.intake"]
     return subprocess.run(words, input=json.dumps(question), capture_output=True, text=True, check=False, cwd=ROOT)
@@ -100,7 +106,7 @@ def ask(**change: Any) -> subprocess.CompletedProcess[str]:
 def test_a_process_of_its_own_answers() -> None:
     done = ask()
     assert done.returncode == 0
-    assert json.loads(done.stdout)["video"]["width"] == 960
+    assert json.loads(done.stdout)["videos"][0]["width"] == 960
 
 
 def test_its_memory_is_limited() -> None:

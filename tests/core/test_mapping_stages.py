@@ -22,6 +22,7 @@ from core.stage import Facts, StageTask
 from core.stages import gallery, map_defects, timeline
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.video.probe import probe_video
+from core.videos import Recording
 from tests.core.making_films import ffmpeg, ffmpeg_pixels
 from tests.core.making_videos import every_ms, make_video
 
@@ -141,7 +142,9 @@ def run_all(inputs: Path, out: Path, settings: Settings = SETTINGS) -> tuple[Pat
     for name, stage in (("map_defects", map_defects), ("timeline", timeline), ("gallery", gallery)):
         folders[name] = out / name
         folders[name].mkdir(parents=True)
-        task = StageTask(name, {}, settings, dict(folders), dict(facts), inputs / "video.mp4", None, folders[name])
+        task = StageTask(
+            name, {}, settings, dict(folders), dict(facts), (Recording(inputs / "video.mp4"),), folders[name]
+        )
         facts[name] = stage.run(task).facts
     return out, facts
 

@@ -16,6 +16,7 @@ from core.settings import make_settings
 from core.stage import Facts, StageTask
 from core.stages import map_defects, timeline
 from core.surface.ply import Mesh, read_mesh, write_cloud, write_mesh
+from core.videos import Recording
 from core.viewgraph import make_table, write_database, write_table
 from tests.core import making_plates as plates
 from tests.core.making_plates import NEAR, detection
@@ -63,7 +64,7 @@ def run_both(inputs: Path, out: Path, codes: tuple[str, ...] = ()) -> dict[str, 
         folders[name] = out / name
         folders[name].mkdir(parents=True)
         settings = make_settings("default")
-        task = StageTask(name, {}, settings, dict(folders), dict(facts), inputs / "none", None, folders[name])
+        task = StageTask(name, {}, settings, dict(folders), dict(facts), (Recording(inputs / "none"),), folders[name])
         facts[name] = stage.run(task).facts
     return facts
 

@@ -37,7 +37,8 @@ GRAPH = Graph(
     serves_from=("join",),
 )
 
-FILES = InputFiles("/v.mp4", hashlib.sha256(b"v").hexdigest(), "/a.json", hashlib.sha256(b"a").hexdigest())
+INPUT = InputFiles("/v.mp4", hashlib.sha256(b"v").hexdigest(), "/a.json", hashlib.sha256(b"a").hexdigest())
+FILES = (INPUT,)
 
 
 def result_for(lease: Lease, facts: Facts | None = None, **more: Any) -> Result:

@@ -68,7 +68,7 @@ def create(admission: Admission, owner: str) -> None:
     with admission.place(owner) as place, admission.db.write() as session:
         place.use(session)
         Inspections(admission.db, GRAPH).create_in(
-            session, digest[:32], InputFiles("v", digest, None, None), make_settings(), "", owner=owner
+            session, digest[:32], [InputFiles("v", digest, None, None)], make_settings(), "", owner=owner
         )
 
 

@@ -8,12 +8,13 @@ import store.graph
 from core.graph import TaskSpec
 from core.settings import make_settings
 from store.graph import CORE_GRAPH
+from store.records import InputFiles
 
 
 def name_of(stage: str) -> str:
     """Fingerprint of a chunk of `stage` with nothing before it."""
     task = TaskSpec(f"{stage}/000", (), {"start": 0, "end": 8})
-    return CORE_GRAPH.fingerprint(task, make_settings("draft"), {}, "v" * 64, None)
+    return CORE_GRAPH.fingerprint(task, make_settings("draft"), {}, [InputFiles("v", "v" * 64, None, None)])
 
 
 @pytest.mark.parametrize(("stage", "uses"), [("features", True), ("matches", True), ("depth", False)])

@@ -16,7 +16,7 @@ from store.housekeeping import Retention
 from store.inspections import Inspections
 from store.models import Inspection, MetricRow, Result, Task, Upload
 from store.plan import Plan
-from tests.store.small_plan import FILES, GRAPH, result_for
+from tests.store.small_plan import FILES, GRAPH, INPUT, result_for
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_a_purged_inspection_leaves_its_row_and_what_others_use(retention: Reten
         assert set(session.scalars(select(MetricRow.inspection_id))) == {"two"}
         assert session.get_one(Inspection, "one").purged_at is not None
     assert unused(retention) == []
-    assert retention.inputs_in_use() == {FILES.video_sha256, FILES.annotations_sha256}
+    assert retention.inputs_in_use() == {INPUT.video_sha256, INPUT.annotations_sha256}
     assert retention.logs_in_use() == {"two"}
     assert retention.folders_in_use() == {"inspections/two/0", "inspections/two/1"}
     mark(retention, "two", deleted_at=later(retention, 0))
@@ -104,7 +104,7 @@ def test_files_at_work_are_those_of_unfinished_or_unpublished_inspections(retent
     for name in ("one", "two"):
         mark(retention, name, published=1)
     assert retention.results_at_work() == set()
-    other = replace(FILES, video_sha256="1" * 64, annotations=None, annotations_sha256=None)
+    other = (replace(INPUT, video_sha256="1" * 64, annotations=None, annotations_sha256=None),)
     Inspections(retention.db, GRAPH).create("three", other, make_settings(), "")
     assert retention.inputs_at_work() == {"1" * 64}
 

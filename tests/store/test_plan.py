@@ -21,7 +21,7 @@ from store.models import Attempt, CaseRow, DetectionRow, MetricRow, Result, Task
 from store.plan import Plan
 from store.records import Lease
 from store.records import Result as FinishedResult
-from tests.store.small_plan import FILES, GRAPH, result_for
+from tests.store.small_plan import FILES, GRAPH, INPUT, result_for
 
 ID = "one"
 
@@ -247,7 +247,7 @@ def test_changed_parameters_recompute_only_what_they_touch(
 
 def test_other_annotations_touch_only_the_stage_that_reads_them(plan: Plan) -> None:
     finish_all(plan)
-    inspections(plan).reopen(ID, replace(FILES, annotations=None, annotations_sha256=None), make_settings())
+    inspections(plan).reopen(ID, [replace(INPUT, annotations=None, annotations_sha256=None)], make_settings())
     assert finish_all(plan) == ["last"]
 
 

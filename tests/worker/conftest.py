@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from core.settings import make_settings
+from core.videos import Recording
 from tests.worker.fake_stages import GRAPH, SMALL, journal
 from worker.events import Event, Outcome
 from worker.local_run import run_inspection
@@ -41,7 +42,7 @@ class Workplace:
     def run(self, options: dict[str, Any] | None = None, annotations: Path | None = None, **more: Any) -> Outcome:
         settings = make_settings(options={**SMALL, **(options or {})})
         more = {"workers": 2, "graph": GRAPH, "on_event": self.events.append, **more}
-        return run_inspection(self.video, annotations, self.out, settings, **more)
+        return run_inspection([Recording(self.video, annotations)], self.out, settings, **more)
 
     def started(self) -> list[str]:
         """Keys of the tasks that began since the last call."""

@@ -69,7 +69,7 @@ class Deployment:
         if self.remote is None:
             self._control(self.root / "artifacts" / key, wishes)
         settings = make_settings(options={**SMALL, **(options or {})})
-        self.inspections.create(name, InputFiles(key, stored.sha256, None, None), settings, "")
+        self.inspections.create(name, [InputFiles(key, stored.sha256, None, None)], settings, "")
 
     @staticmethod
     def _control(video: Path, wishes: dict[str, dict[str, Any]]) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from core.errors import BadInput, DiskFull
 from core.settings import make_settings
+from core.videos import Recording
 from tests.worker.conftest import Workplace
 from tests.worker.disks import fill, mounted
 from tests.worker.fake_stages import GRAPH
@@ -28,26 +29,26 @@ def test_a_disk_that_fills_up_is_one_clear_error_and_it_goes_on_later(
 ) -> None:
     out = small_disk / "out"
     filler = fill(small_disk, leave)
-    outcome = run_inspection(place.video, None, out, make_settings(), graph=GRAPH, workers=2)
+    outcome = run_inspection([Recording(place.video)], out, make_settings(), graph=GRAPH, workers=2)
     assert outcome.state == "failed"
     assert isinstance(outcome.error, DiskFull)
     assert "no space left" in outcome.error.message
     assert not (out / "summary.json").exists() or (out / "summary.json").read_text().endswith("}\n")
     filler.unlink()
-    again = run_inspection(place.video, None, out, make_settings(), graph=GRAPH, workers=2)
+    again = run_inspection([Recording(place.video)], out, make_settings(), graph=GRAPH, workers=2)
     assert again.state == "succeeded"
 
 
 def test_a_disk_that_is_full_from_the_start_is_one_clear_error(place: Workplace, small_disk: Path) -> None:
     fill(small_disk, 0)
     with pytest.raises(DiskFull):
-        run_inspection(place.video, None, small_disk / "out", make_settings(), graph=GRAPH)
+        run_inspection([Recording(place.video)], small_disk / "out", make_settings(), graph=GRAPH)
 
 
 def test_a_read_only_disk_is_bad_input(place: Workplace, small_disk: Path) -> None:
     subprocess.run(["mount", "-o", "remount,ro", str(small_disk)], check=True)
     with pytest.raises(BadInput) as caught:
-        run_inspection(place.video, None, small_disk / "out", make_settings(), graph=GRAPH)
+        run_inspection([Recording(place.video)], small_disk / "out", make_settings(), graph=GRAPH)
     assert caught.value.code == "unwritable_output"
 
 
@@ -55,5 +56,5 @@ def test_a_read_only_disk_is_bad_input(place: Workplace, small_disk: Path) -> No
 def test_a_file_in_the_place_of_the_folder_is_bad_input(place: Workplace, tmp_path: Path, inside: str) -> None:
     (tmp_path / "file").write_text("x")
     with pytest.raises(BadInput) as caught:
-        run_inspection(place.video, None, tmp_path / "file" / inside, make_settings(), graph=GRAPH)
+        run_inspection([Recording(place.video)], tmp_path / "file" / inside, make_settings(), graph=GRAPH)
     assert caught.value.code == "unwritable_output"

@@ -54,7 +54,7 @@ class Server:
 
     def create(self, name: str) -> None:
         sha256 = hashlib.sha256(self.place.video.read_bytes()).hexdigest()
-        files = InputFiles(str(self.place.video), sha256, None, None)
+        files = [InputFiles(str(self.place.video), sha256, None, None)]
         self.inspections.create(name, files, make_settings(options=SMALL), str(self.place.out))
 
     @property

@@ -11,6 +11,7 @@ import pytest
 
 from core.errors import BadInput
 from core.settings import make_settings
+from core.videos import Recording
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH
 from worker.local_run import Names, run_inspection
@@ -172,7 +173,7 @@ def test_two_runs_in_one_folder_exclude_each_other(place: Workplace) -> None:
     while not any(event.kind == "started" for event in place.events):
         time.sleep(0.02)
     with pytest.raises(BadInput) as caught:
-        run_inspection(place.video, None, place.out, make_settings(), graph=GRAPH)
+        run_inspection([Recording(place.video)], place.out, make_settings(), graph=GRAPH)
     assert caught.value.code == "folder_in_use"
     first.join()
     assert place.events[-1].state == "succeeded"

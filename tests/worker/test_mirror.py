@@ -108,14 +108,14 @@ def test_inputs_are_downloaded_once_checked_and_evicted(tmp_path: Path, store: A
     store.put(key, source)
     inputs = LocalInputs(store, tmp_path / "cache")
     files = InputFiles(key, sha256, None, None)
-    assert not inputs.video(files, needed=False).exists()
-    assert inputs.annotations(files, needed=True) is None
-    path = inputs.video(files, needed=True)
+    assert not inputs.recording(files, video=False, annotations=True).video.exists()
+    path = inputs.recording(files, video=True, annotations=True).video
+    assert inputs.recording(files, video=True, annotations=True).annotations is None
     assert path.read_bytes() == b"a video"
     store.remove(key)
-    assert inputs.video(files, needed=True) == path
+    assert inputs.recording(files, video=True, annotations=False).video == path
     assert inputs.evict({sha256}, 0.0) == 0
     assert inputs.evict(set(), 0.0) == 1
     with pytest.raises(FileNotFoundError):
-        inputs.video(files, needed=True)
+        inputs.recording(files, video=True, annotations=False)
     assert list((tmp_path / "cache").iterdir()) == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from core.annotations.checks import parse_time, shown
@@ -38,6 +39,15 @@ def looks_like_video(head: bytes) -> bool:
     riff = head.startswith(b"RIFF") and head[8:11] == b"AVI"
     stream = head.startswith(b"G") and len(head) > 188 and head[188:189] == b"G"
     return riff or stream or head[4:8] in (b"ftyp", b"moov", b"mdat", b"wide") or head.startswith(_VIDEO_STARTS)
+
+
+def is_video_file(path: Path) -> bool:
+    """Whether the file is a video by its first bytes; False for what cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return looks_like_video(stream.read(512))
+    except OSError:
+        return False
 
 
 def binary_kind(data: bytes) -> BadInput | None:

@@ -15,7 +15,7 @@ from core.annotations.summary import summarise
 from core.errors import BadInput
 from core.io.annotations import read_detections, read_looked_at, read_masks, write_annotations
 from core.scene.detection import Mask
-from core.scene.frame import Crop
+from core.scene.frame import Crop, SourceFrame
 from core.video.table import FrameRow, FrameTable, VideoInfo
 
 DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}
@@ -97,7 +97,7 @@ def test_files_give_back_what_was_placed(tmp_path: Path) -> None:
     assert tuple(read_detections(tmp_path)) == placed.detections
     assert read_masks(tmp_path) == placed.masks
     assert read_looked_at(tmp_path) == list(placed.looked_at)
-    assert len(placed.masks[1]) == 2, "two keys on one frame both count"
+    assert len(placed.masks[SourceFrame(0, 1)]) == 2, "two keys on one frame both count"
 
 
 def test_a_rectangle_covers_exactly_its_pixels_of_the_crop() -> None:

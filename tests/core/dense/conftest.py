@@ -34,5 +34,5 @@ def undistorted(tmp_path_factory: pytest.TempPathFactory) -> Undistorted:
     out = root / "undistort"
     out.mkdir()
     inputs = {"extend": root / "extend", "frames": root / "frames"}
-    task = StageTask("undistort", {}, make_settings("default", OPTIONS), inputs, {}, root / "v.mp4", None, out)
+    task = StageTask("undistort", {}, make_settings("default", OPTIONS), inputs, {}, (), out)
     return Undistorted(out, scene, undistort.run(task).facts, root)

@@ -52,7 +52,7 @@ def chain(undistorted: Undistorted) -> Chain:
     def run(stage: ModuleType, key: str, args: Mapping[str, int], inputs: Mapping[str, Path]) -> tuple[Path, Facts]:
         out = root / key
         out.mkdir(parents=True)
-        task = StageTask(key, args, settings, inputs, {}, root / "v.mp4", None, out)
+        task = StageTask(key, args, settings, inputs, {}, (), out)
         return out, stage.run(task).facts
 
     inputs = {"undistort": undistorted.folder}

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import BadInput
-from core.frames.sampling import Interval, choose_frames, clip_interval, sample_uniformly
+from core.frames.sampling import Interval, Stretch, choose_frames, clip_interval, sample_uniformly
 from core.scene.frame import Role
 from core.settings import make_settings
 from core.video.table import FrameRow, FrameTable, VideoInfo
@@ -38,8 +38,8 @@ def interval_of(table: FrameTable, preset: str, **options: float) -> Interval:
 def test_the_thesis_samples_450_frames_from_60_to_3606() -> None:
     interval = interval_of(THESIS_VIDEO, "thesis")
     assert (interval.first, interval.last, interval.flags) == (60, 3606, ())
-    chosen = choose_frames(interval, {100, 200}, make_settings("thesis").frames)
-    sources = [frame.source_index for frame in chosen]
+    chosen = choose_frames([Stretch(interval, {100, 200})], make_settings("thesis").frames)
+    sources = [frame.source.source_index for frame in chosen]
     assert len(sources) == len(set(sources)) == 450
     assert (sources[0], sources[-1]) == (60, 3606)
     assert sources == [round(60 + i * 3546 / 449) for i in range(450)]
@@ -113,8 +113,8 @@ def test_a_users_impossible_interval_is_refused(preset: str, options: dict[str, 
 
 def test_annotated_frames_join_the_search_and_roles_say_why() -> None:
     settings = make_settings("default", {"frames.count": 4}).frames
-    chosen = choose_frames(Interval(0, 9), {3, 4, 12}, settings)
-    assert [(f.index, f.source_index, f.role) for f in chosen] == [
+    chosen = choose_frames([Stretch(Interval(0, 9), {3, 4, 12})], settings)
+    assert [(f.index, f.source.source_index, f.role) for f in chosen] == [
         (0, 0, "sampled"),
         (1, 3, "both"),
         (2, 4, "annotated"),
@@ -126,33 +126,38 @@ def test_annotated_frames_join_the_search_and_roles_say_why() -> None:
 def test_annotated_frames_over_the_budget_are_added_afterwards() -> None:
     settings = make_settings("default", {"frames.count": 4, "frames.max_count": 6}).frames
     annotated = {1, 2, 4, 5, 7, 8}
-    chosen = choose_frames(Interval(0, 9), annotated, settings)
+    chosen = choose_frames([Stretch(Interval(0, 9), annotated)], settings)
     search = [f for f in chosen if f.role != "added"]
     added = [f for f in chosen if f.role == "added"]
     assert len(search) == 6
     assert [f.index for f in chosen] == list(range(10))
-    assert [f.source_index for f in search] == sorted(f.source_index for f in search)
-    assert [f.source_index for f in added] == sorted(f.source_index for f in added)
-    assert {f.source_index for f in chosen} == set(range(10))
-    assert [f.source_index for f in search if f.role == "annotated"] == [1, 8], "the budget is spread over the clip"
+    assert [f.source.source_index for f in search] == sorted(f.source.source_index for f in search)
+    assert [f.source.source_index for f in added] == sorted(f.source.source_index for f in added)
+    assert {f.source.source_index for f in chosen} == set(range(10))
+    assert [f.source.source_index for f in search if f.role == "annotated"] == [1, 8], (
+        "the budget is spread over the clip"
+    )
 
 
 def test_a_budget_below_the_sample_takes_no_annotated_frame_into_the_search() -> None:
     settings = make_settings("default", {"frames.count": 5, "frames.max_count": 3}).frames
-    chosen = choose_frames(Interval(0, 8), {1, 3}, settings)
+    chosen = choose_frames([Stretch(Interval(0, 8), {1, 3})], settings)
     assert [f.role for f in chosen] == ["sampled"] * 5 + ["added"] * 2
 
 
 def test_an_annotated_frame_far_from_the_samples_gets_neighbours_on_both_sides() -> None:
     settings = make_settings("default", {"frames.count": 5}).frames
-    roles = {f.source_index: f.role for f in choose_frames(Interval(0, 400), {150, 165, 205, 398}, settings, reach=10)}
+    roles = {
+        f.source.source_index: f.role
+        for f in choose_frames([Stretch(Interval(0, 400), {150, 165, 205, 398}, 10)], settings)
+    }
     neighbours = {source for source, role in roles.items() if role == "neighbour"}
     assert neighbours == {140, 160, 175, 215, 388}  # 165 has 160 and 205 has 200; 398 has 400 behind it
 
 
 def test_neighbours_come_after_the_annotated_frames_in_the_budget() -> None:
     settings = make_settings("default", {"frames.count": 5, "frames.max_count": 8}).frames
-    chosen = choose_frames(Interval(0, 400), {150, 250}, settings, reach=10)
+    chosen = choose_frames([Stretch(Interval(0, 400), {150, 250}, 10)], settings)
     assert [frame.role for frame in chosen].count(Role.ANNOTATED) == 2
     assert [frame.role for frame in chosen].count(Role.NEIGHBOUR) == 1
-    assert not [f for f in choose_frames(Interval(0, 400), {150}, settings) if f.role == "neighbour"]
+    assert not [f for f in choose_frames([Stretch(Interval(0, 400), {150})], settings) if f.role == "neighbour"]

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.gallery.boxes import FrameBoxes
-from core.gallery.defects import BestFrame, DefectLine
+from core.gallery.defects import BestFrame, DefectLine, Instant
 from core.gallery.evidence import Evidence
 from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
+from core.scene.frame import SourceFrame
 from tests.core.making_rows import mapped, unplaced
 
 NASTY = [
@@ -26,7 +27,7 @@ def hostile_page() -> str:
     """Every part of the page, once: defects with and without a frame, evidence, all outcomes, a frame left out."""
     rows = [replace(mapped(n, (n, 0, 0), float(n), label), defect_id=n) for n, label in enumerate(NASTY)]
     rows += [unplaced(20, "no_frame", source_index=None), unplaced(21, score=None, label=NASTY[0])]
-    frames = [FrameBoxes(n, float(n), (row, rows[-1])) for n, row in enumerate(rows[:5])]
+    frames = [FrameBoxes(SourceFrame(0, n), float(n), (row, rows[-1])) for n, row in enumerate(rows[:5])]
     lines = [
         DefectLine(
             number=n,
@@ -34,14 +35,14 @@ def hostile_page() -> str:
             size=0.5 if n else None,
             size_sigma=0.0625 if n > 1 else None,
             unit="model",
-            start_s=float(n) if n else None,
-            end_s=n + 0.5 if n else None,
+            start=Instant(0, float(n)) if n else None,
+            end=Instant(0, n + 0.5) if n else None,
             visits=n,
             n_detections=n + 1,
             n_frames=n + 1,
             n_could_show=n + 2,
             place=(n, -1.5, 0.25),
-            best=BestFrame(n, n + 0.125, (0.5, 0.5)) if n < 3 else None,
+            best=BestFrame(SourceFrame(0, n), n + 0.125, (0.5, 0.5)) if n < 3 else None,
         )
         for n, label in enumerate(NASTY)
     ]

@@ -11,6 +11,7 @@ from core.gallery.boxes import (
     group_by_frame,
 )
 from core.gallery.palette import PALETTE, label_colors
+from core.scene.frame import SourceFrame
 from tests.core.making_rows import mapped, unplaced
 
 BLACK = np.zeros((200, 300, 3), np.uint8)
@@ -18,8 +19,8 @@ BLACK = np.zeros((200, 300, 3), np.uint8)
 
 def test_frames_are_those_with_detections_in_order() -> None:
     rows = [mapped(0, (0, 0, 0)), mapped(1, (0, 0, 0)), unplaced(2, "no_frame"), mapped(3, (0, 0, 0))]
-    frames = group_by_frame(rows, {0: 9, 1: 4, 2: None, 3: 9})
-    assert [(frame.source_index, [row.id for row in frame.rows]) for frame in frames] == [(4, [1]), (9, [0, 3])]
+    frames = group_by_frame(rows, {0: SourceFrame(0, 9), 1: SourceFrame(0, 4), 2: None, 3: SourceFrame(0, 9)})
+    assert [(frame.source.source_index, [row.id for row in frame.rows]) for frame in frames] == [(4, [1]), (9, [0, 3])]
     assert frames[0].file_name == "frame_000004.jpg"
 
 
@@ -36,7 +37,7 @@ def test_a_place_without_a_box_gets_a_cross() -> None:
 def test_too_many_frames_keep_the_best_of_every_defect_and_label() -> None:
     def frame(number: int, score: float, label: str, defect: int | None) -> FrameBoxes:
         row = mapped(number, (0, 0, 0), label=label, score=score)
-        return FrameBoxes(number, 0.0, (type(row)(**{**row.to_dict(), "defect_id": defect}),))
+        return FrameBoxes(SourceFrame(0, number), 0.0, (type(row)(**{**row.to_dict(), "defect_id": defect}),))
 
     frames = [
         frame(0, 0.9, "dent", 0),
@@ -46,8 +47,8 @@ def test_too_many_frames_keep_the_best_of_every_defect_and_label() -> None:
         frame(4, 0.95, "dent", None),
         frame(5, 0.3, "dent", None),
     ]
-    assert [f.source_index for f in choose_frames(frames, 4)] == [0, 2, 3, 4]
-    assert [f.source_index for f in choose_frames(frames, 5)] == [0, 1, 2, 3, 4]
+    assert [f.source.source_index for f in choose_frames(frames, 4)] == [0, 2, 3, 4]
+    assert [f.source.source_index for f in choose_frames(frames, 5)] == [0, 1, 2, 3, 4]
     assert choose_frames(frames, 6) == frames
 
 

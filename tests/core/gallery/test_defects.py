@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 
-from core.gallery.defects import BestFrame, defect_lines
+from core.gallery.defects import BestFrame, Instant, defect_lines
 from core.scene.defect import DefectRecord, EventRow, Extent, Persistence, Sighting
+from core.scene.frame import SourceFrame
 from tests.core.making_rows import defect, run_frames
 
 FRAMES = run_frames(8, 0.5, every=10)
@@ -51,13 +52,15 @@ def test_a_size_has_its_sigma_and_unit(extent: Extent | None, text: str) -> None
 def test_a_row_spans_all_visits_of_its_defect() -> None:
     events = [visit(1, 5.0, 6.0), visit(0, 0.0, 9.0), visit(1, 1.0, 2.0)]
     (line,) = defect_lines([record(1, None)], events, FRAMES)
-    assert (line.start_s, line.end_s, line.visits) == (1.0, 6.0, 2)
+    assert (line.start, line.end, line.visits) == (Instant(0, 1.0), Instant(0, 6.0), 2)
     assert (line.n_detections, line.n_frames, line.n_could_show) == (4, 3, 5)
 
 
 def test_the_best_frame_is_the_first_of_the_record() -> None:
     (line,) = defect_lines([record(0, None)], [], FRAMES)
-    assert line.best == BestFrame(70, 3.5, (0.25, 0.5))
+    assert line.best == BestFrame(SourceFrame(0, 70), 3.5, (0.25, 0.5))
     by_thesis = (Sighting(4, 1.0, detected=True),)
-    assert defect_lines([record(0, None, frames=by_thesis)], [], FRAMES)[0].best == BestFrame(40, 2.0, None)
+    assert defect_lines([record(0, None, frames=by_thesis)], [], FRAMES)[0].best == BestFrame(
+        SourceFrame(0, 40), 2.0, None
+    )
     assert defect_lines([record(0, None, frames=())], [], FRAMES)[0].best is None

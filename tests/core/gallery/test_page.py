@@ -15,6 +15,7 @@ from core.gallery.defects import defect_lines
 from core.gallery.page import gallery_page
 from core.gallery.palette import label_colors
 from core.scene.defect import DefectRecord, Sighting
+from core.scene.frame import SourceFrame
 from core.thesis.grouping import cluster_detections, event_rows, with_defect_ids
 from tests.core.gallery.hostile import NASTY, hostile_page
 from tests.core.making_rows import defect, mapped, run_frames, unplaced
@@ -58,7 +59,7 @@ def page(labels: list[str], shown: int | None = None) -> tuple[str, Reader]:
     rows += [unplaced(len(labels), "no_frame", source_index=None)]
     clusters = cluster_detections(rows, 1.0)
     rows = with_defect_ids(rows, clusters)
-    frames = [FrameBoxes(i, float(i), (rows[i],)) for i in range(len(labels))]
+    frames = [FrameBoxes(SourceFrame(0, i), float(i), (rows[i],)) for i in range(len(labels))]
     colors = label_colors([row.label for row in rows])
     events = event_rows(clusters)
     records = [record(number, labels[number]) for number in range(len(clusters))]

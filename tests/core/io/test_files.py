@@ -14,7 +14,7 @@ from core.io.sparse import has_model, read_model, read_poses, write_cameras, wri
 from core.io.timeline import read_defects, read_events, write_timeline
 from core.scene.defect import EventRow
 from core.scene.detection import Mask
-from core.scene.frame import Crop
+from core.scene.frame import Crop, SourceFrame
 from core.scene.views import views_of
 from tests.core import making_plates as plates
 from tests.core.making_rows import defect, detection, mapped, run_frames, unplaced
@@ -22,7 +22,12 @@ from tests.core.making_rows import defect, detection, mapped, run_frames, unplac
 
 def test_detections_are_compact_and_rows_are_not(tmp_path: Path) -> None:
     mask = Mask("blade", ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)))
-    write_annotations(tmp_path, [detection(box=(0.25, 0.25, 0.5, 0.5))], {12: (mask,), 3: ()}, [3, 12])
+    write_annotations(
+        tmp_path,
+        [detection(box=(0.25, 0.25, 0.5, 0.5))],
+        {SourceFrame(0, 12): (mask,), SourceFrame(0, 3): ()},
+        [SourceFrame(0, 3), SourceFrame(0, 12)],
+    )
     assert (tmp_path / "detections.json").read_text() == (
         '[{"id":0,"key":"1.0000","time_s":1.0,"label":"dent","score":0.9,"box":[0.25,0.25,0.5,0.5],'
         '"polygon":null,"track_id":null,"source_index":10}]\n'

@@ -21,6 +21,7 @@ from core.stage import StageTask
 from core.stages import annotations as annotations_stage
 from core.stages import probe
 from core.thesis.grouping import cluster_detections, event_rows, with_defect_ids
+from core.videos import Recording
 from tests.core.making_record import full_record
 from tests.core.making_rows import mapped
 from tests.labels import LABELS, SAMPLE
@@ -67,7 +68,7 @@ def detections(tmp_path_factory: pytest.TempPathFactory) -> list[Detection]:
     folders: dict[str, Path] = {}
     for key, run in (("probe", probe.run), ("annotations", annotations_stage.run)):
         (root / key).mkdir()
-        run(StageTask(key, {}, make_settings(), dict(folders), {}, SAMPLE, LABELS, root / key))
+        run(StageTask(key, {}, make_settings(), dict(folders), {}, (Recording(SAMPLE, LABELS),), root / key))
         folders[key] = root / key
     return read_detections(root / "annotations")
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from core.io.annotations import write_annotations, write_rows
 from core.report.load import load_tables
+from core.scene.frame import SourceFrame
 from tests.core.making_rows import detection, mapped
 
 
@@ -16,7 +17,7 @@ def folder(tmp_path: Path, name: str) -> Path:
 
 def test_reads_what_is_there(tmp_path: Path) -> None:
     read, placed = folder(tmp_path, "a"), folder(tmp_path, "m")
-    write_annotations(read, [detection()], {}, [10])
+    write_annotations(read, [detection()], {}, [SourceFrame(0, 10)])
     write_rows(placed, [mapped(0, (1.0, 2.0, 3.0))])
     tables = load_tables({"annotations": read, "map_defects": placed})
     assert tables.detections == [detection()]

@@ -3,11 +3,12 @@ from __future__ import annotations
 import pytest
 
 from core.scene.detection import DETECTION_COLUMNS, REASONS, Reason, outcome_counts, rows_without_model, unplaced_row
+from core.scene.frame import SourceFrame
 from tests.core.making_rows import detection, mapped, unplaced
 
 CONTRACT = (
     "id key time_s label score box_x1 box_y1 box_x2 box_y2 frame_index outcome reason rung support_points "
-    "x y z confidence blade defect_id model"
+    "x y z confidence blade defect_id model video"
 )
 
 
@@ -30,7 +31,7 @@ def test_all_reasons_of_the_contract_are_known() -> None:
 
 def test_without_a_model_no_detection_is_dropped() -> None:
     asked = [detection(0, source_index=None), detection(1, source_index=4), detection(2, source_index=5)]
-    rows = rows_without_model(asked, {5: 1})
+    rows = rows_without_model(asked, {SourceFrame(0, 5): 1})
     assert [row.reason for row in rows] == ["no_frame", "no_registered_view", "frame_not_registered"]
     assert [row.frame_index for row in rows] == [None, None, 1]
 

@@ -14,7 +14,17 @@ import pytest
 from core.scene.case import CASE_COLUMNS, CaseRow, CaseStatus, StartMode
 from core.scene.defect import Confidence, DefectRecord, EventRow, Sighting
 from core.scene.detection import Detection, DetectionRow
-from core.scene.frame import FRAME_COLUMNS, Frame, FrameRow, Role, RunFrames, frames_of, image_name, index_of_image
+from core.scene.frame import (
+    FRAME_COLUMNS,
+    Frame,
+    FrameRow,
+    Role,
+    RunFrames,
+    SourceFrame,
+    frames_of,
+    image_name,
+    index_of_image,
+)
 from tests.core.making_rows import defect, detection, mapped, run_frames, unplaced
 
 FRAME = Frame(3, 30, 3000, 1.5, "ab" * 32, Role.NEIGHBOUR)
@@ -68,7 +78,7 @@ def test_unknown_words_and_torn_values_are_refused(kind: Any, row: dict[str, Any
 def test_a_published_frame_has_the_frame_first() -> None:
     row = FrameRow(**asdict(FRAME), registered=1, model=0)
     assert tuple(row.to_dict()) == FRAME_COLUMNS
-    assert FRAME_COLUMNS[:6] == tuple(FRAME.to_dict())
+    assert FRAME_COLUMNS[:7] == tuple(FRAME.to_dict())
 
 
 def test_the_frame_table_is_by_index_and_knows_its_search() -> None:
@@ -77,8 +87,8 @@ def test_the_frame_table_is_by_index_and_knows_its_search() -> None:
     frames = frames_of(rows[::-1])
     assert [frame.index for frame in frames] == [0, 1, 2, 3]
     assert frames.n_search == 3
-    assert frames.index_of_source == {0: 0, 10: 1, 20: 2, 30: 3}
-    assert frames.time_of_index[2] == frames.times_s[2] == 1.0
+    assert frames.index_of_source == {SourceFrame(0, 10 * i): i for i in range(4)}
+    assert frames.moment_of_index[2] == frames.moments_s[2] == 1.0
     assert RunFrames(()).n_search == len(RunFrames(())) == 0
     assert index_of_image(image_name(12)) == 12
 

@@ -42,7 +42,7 @@ def test_a_case_says_every_column_that_it_can_know_in_their_order(tmp_path: Path
     scene = make_scene(16, 600)
     graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
     args = {"name": "seg_000_0000_0002", "start": 0, "end": 2, "warm_from": ""}
-    task = StageTask("coarse/x", args, make_settings(), {"graph": graph}, {}, Path(), None, tmp_path)
+    task = StageTask("coarse/x", args, make_settings(), {"graph": graph}, {}, (), tmp_path)
     facts = coarse.run(task).facts
     known = [name for name in CASE_COLUMNS if name not in ("seconds", "selected", "vetoed")]
     assert list(facts) == [*known, "checks", "vetoed"]

@@ -124,7 +124,7 @@ def case_task(graph: Path, out: Path, start: int, end: int, **more: Any) -> Stag
     inputs = {"graph": graph, **more}
     out.mkdir()
     settings = make_settings("default", {"mapper.search_tracks": 150})
-    return StageTask("coarse/x", args, settings, inputs, {}, Path(), None, out)
+    return StageTask("coarse/x", args, settings, inputs, {}, (), out)
 
 
 def test_the_stages_write_a_model_and_a_row(graph: Path, tmp_path: Path) -> None:

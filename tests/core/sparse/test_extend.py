@@ -97,7 +97,7 @@ def run_stages(
     reduced = {"best": "seg_000_0004_0014", "start": 4, "end": 14, "kind": "coarse", "start_mode": start_mode}
 
     def task(key: str, inputs: Mapping[str, Path], facts: Mapping[str, Facts]) -> StageTask:
-        return StageTask(key, {}, settings, inputs, facts, Path("video"), None, out / key)
+        return StageTask(key, {}, settings, inputs, facts, (), out / key)
 
     confirmed = confirm_stage.run(
         task("confirm", {"graph": graph, "reduce_refine": out / "reduce_refine"}, {"reduce_refine": reduced})

@@ -31,7 +31,7 @@ def task(scene: Scene, folder: Path, fov_deg: float) -> StageTask:
     }
     settings = make_settings("default", {"camera.focal_span": 14, "camera.focal_spans": 1})
     return StageTask(
-        "focal", {"fov_deg": fov_deg}, settings, {"features/000": features}, {"frames": frames}, Path(), None, folder
+        "focal", {"fov_deg": fov_deg}, settings, {"features/000": features}, {"frames": frames}, (), folder
     )
 
 

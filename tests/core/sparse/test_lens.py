@@ -81,6 +81,6 @@ def test_starts_that_found_nothing_fall_back_to_colmap_with_a_reason() -> None:
 
 def test_the_stage_writes_what_it_says(tmp_path: Path) -> None:
     facts = {"frames": FRAMES, "focal/040.0": start(40.0, 519.0)}
-    result = camera.run(StageTask("camera", {}, make_settings(), {}, facts, Path(), None, tmp_path))
+    result = camera.run(StageTask("camera", {}, make_settings(), {}, facts, (), tmp_path))
     assert json.loads((tmp_path / "camera.json").read_text()) == result.facts
     assert result.facts["model"] == "OPENCV_FISHEYE"

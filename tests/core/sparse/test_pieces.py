@@ -99,6 +99,6 @@ def test_the_stage_writes_what_the_final_model_lacks(broken: tuple[Scene, PairTa
     out.mkdir()
     inputs = {"graph": graph, "extend": tmp_path / "extend"}
     facts = {"frames": {"n_frames": N, "n_search": N}}
-    result = stage.run(StageTask("pieces", {}, make_settings(), inputs, facts, tmp_path, None, out))
+    result = stage.run(StageTask("pieces", {}, make_settings(), inputs, facts, (), out))
     assert result.facts == {"n_pieces": 1, "registered_images": [N - CUT], "registered_first": CUT}
     assert pycolmap.Reconstruction(out / "1/model").num_reg_images() == N - CUT

@@ -10,7 +10,7 @@ from core.errors import NoReconstruction, StageFailed
 from core.io.annotations import write_annotations
 from core.io.frames import write_frames
 from core.scene.case import CaseKind
-from core.scene.frame import Crop
+from core.scene.frame import Crop, SourceFrame
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case
@@ -54,7 +54,7 @@ def task(facts: dict[str, Any], out: Path = Path()) -> StageTask:
         (folder / "model").mkdir(parents=True, exist_ok=True)
         (folder / "model" / "points3D.bin").write_text(key)
     settings = make_settings("default", {"model.prefer_verified": False})
-    return StageTask("reduce", {}, settings, inputs, facts, Path(), None, out)
+    return StageTask("reduce", {}, settings, inputs, facts, (), out)
 
 
 def test_images_count_before_points() -> None:
@@ -163,12 +163,12 @@ def test_the_stage_counts_the_detections_of_every_model(tmp_path: Path) -> None:
         inputs[name] = tmp_path / name
         inputs[name].mkdir()
     write_frames(inputs["frames"], run_frames(20, 0.05, every=2), crop)
-    write_annotations(inputs["annotations"], [detection(0, 1.7, (0.2, 0.2, 0.8, 0.8), 34)], {}, [34])
+    write_annotations(inputs["annotations"], [detection(0, 1.7, (0.2, 0.2, 0.8, 0.8), 34)], {}, [SourceFrame(0, 34)])
     for prefer, winner in ((True, "refine_000"), (False, "seg_000")):
         out = tmp_path / str(prefer)
         settings = make_settings("default", {"model.prefer_verified": prefer})
         all_facts = {**facts, "reduce_coarse": {"best": "seg_000"}}
-        found = reduce_refine.run(StageTask("reduce_refine", {}, settings, inputs, all_facts, Path(), None, out)).facts
+        found = reduce_refine.run(StageTask("reduce_refine", {}, settings, inputs, all_facts, (), out)).facts
         assert found["best"] == winner
         counts = [item.get("verified_detections") for item in found["ranking"]]
         assert counts == ([1, 0] if prefer else [None, None])

@@ -15,6 +15,7 @@ from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import annotations as annotations_stage
 from core.stages import probe
+from core.videos import Recording
 from tests.core.making_record import full_record
 from tests.inputs import INPUTS
 
@@ -24,7 +25,7 @@ VIDEO = INPUTS / "m96.avi"
 @pytest.fixture(scope="module")
 def probed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("probe")
-    probe.run(StageTask("probe", {}, make_settings(), {}, {}, VIDEO, None, out))
+    probe.run(StageTask("probe", {}, make_settings(), {}, {}, (Recording(VIDEO),), out))
     return out
 
 
@@ -32,7 +33,9 @@ def quality_after(probed: Path, out: Path, convention: str) -> dict[str, Any]:
     """`quality.json` of a sound run whose annotations stage read these keys."""
     settings = make_settings(options={"input.time_convention": convention})
     file = INPUTS / "frames_few.json"
-    facts = annotations_stage.run(StageTask("annotations", {}, settings, {"probe": probed}, {}, VIDEO, file, out)).facts
+    facts = annotations_stage.run(
+        StageTask("annotations", {}, settings, {"probe": probed}, {}, (Recording(VIDEO, file),), out)
+    ).facts
     record = full_record()
     tasks = [replace(task, facts=facts) if task.key == "annotations" else task for task in record.tasks]
     return build_report(replace(record, tasks=tasks)).quality
@@ -64,7 +67,7 @@ def test_a_file_of_another_tool_is_put_on_frames_and_what_is_not_read_reaches_th
     settings = make_settings(options={"input.annotation_format": "labelme"})
     file = FOREIGN / "tools" / "labelme_frame_0003.json"
     facts = annotations_stage.run(
-        StageTask("annotations", {}, settings, {"probe": probed}, {}, VIDEO, file, tmp_path)
+        StageTask("annotations", {}, settings, {"probe": probed}, {}, (Recording(VIDEO, file),), tmp_path)
     ).facts
     rows = json.loads((tmp_path / "detections.json").read_text())
     assert [row["source_index"] for row in rows] == [3, 3]
@@ -79,6 +82,6 @@ def test_the_size_of_the_pictures_is_held_against_the_video(probed: Path, tmp_pa
     document = json.loads((FOREIGN / "labelme.json").read_text())
     file = tmp_path / "other.json"
     file.write_text(json.dumps({**document, "imageHeight": 540}))
-    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, VIDEO, file, tmp_path)
+    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, (Recording(VIDEO, file),), tmp_path)
     with pytest.raises(BadInput, match=r"960x540 .* have 320x240"):
         annotations_stage.run(task)

@@ -20,6 +20,7 @@ from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import features, graph, matches
 from core.verification import STRONG_INLIERS
+from core.videos import Recording
 from core.viewgraph import read_table
 from tests.core.making_frames import SIZE, frames_folder
 
@@ -32,7 +33,7 @@ def _task(
     out.mkdir(parents=True, exist_ok=True)
     settings = make_settings(options={**OPTIONS, **(options or {})})
     args: dict[str, Any] = {name: more.pop(name) for name in ("start", "end") if name in more}
-    return StageTask(key, args, settings, inputs, {}, Path("video.mp4"), None, out, **more)
+    return StageTask(key, args, settings, inputs, {}, (Recording(Path("video.mp4")),), out, **more)
 
 
 @pytest.fixture(scope="module")

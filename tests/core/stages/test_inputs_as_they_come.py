@@ -21,6 +21,7 @@ from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import features
 from core.video.table import FrameTable
+from core.videos import Recording
 from tests.core.making_films import ffmpeg_pixels
 from tests.core.test_bad_input import run_stages
 from tests.inputs import INPUTS
@@ -135,7 +136,9 @@ def test_damaged_pictures_stay_in_the_table_and_give_no_keypoints(
     out.mkdir()
     settings = make_settings(options={"features.method": "sift", "features.max_keypoints": 100})
     inputs = {"frames": tmp_path / "results" / "frames"}
-    features.run(StageTask("features/000", {"start": 18, "end": 27}, settings, inputs, {}, Path(video), None, out))
+    features.run(
+        StageTask("features/000", {"start": 18, "end": 27}, settings, inputs, {}, (Recording(Path(video)),), out)
+    )
     empty = [index for index in range(18, 27) if not len(read_features(out / f"{index:04d}.npz"))]
     assert empty == frames
 

@@ -90,7 +90,7 @@ def test_mesh_stage_meets_the_sphere_and_cuts_what_is_invented(tmp_path: Path) -
     colors = np.tile(np.array([[10, 200, 30]], np.uint8), (len(normals), 1))
     write_cloud(fuse / "fused.ply", Mesh(2 * normals, colors=colors, normals=normals), ("unit: model units",))
     settings = make_settings("default", {"mesh.poisson_depth": 7, "mesh.poisson_trim": 0})
-    task = StageTask("mesh", {}, settings, {"fuse": fuse}, {}, tmp_path / "v.mp4", None, out)
+    task = StageTask("mesh", {}, settings, {"fuse": fuse}, {}, (), out)
     facts = mesh_stage.run(task).facts
     kept, full = read_mesh(out / "mesh_poisson.ply"), read_mesh(out / "mesh_full.ply")
     assert sorted(path.name for path in out.iterdir()) == ["mesh.json", "mesh_full.ply", "mesh_poisson.ply"]

@@ -19,7 +19,7 @@ CLUSTERS = cluster_detections(ROWS, 1.0)
 
 
 def test_columns_are_the_contract() -> None:
-    expected = "event_id defect_id label start_s end_s n_detections n_frames x y z radius confidence"
+    expected = "event_id defect_id label start_s end_s n_detections n_frames x y z radius confidence video"
     assert " ".join(TIMELINE_COLUMNS) == expected
 
 
@@ -61,7 +61,9 @@ def test_extent_ignores_a_few_points_far_behind() -> None:
 def test_defect_records() -> None:
     supports = {row.id: np.array([[0.0, 0, 0], [1, 0, 0]]) for row in ROWS}
     seen = [[Sighting(7, 1.0), Sighting(3, 0.5), Sighting(5, 0.25)], []]
-    first, second = (one.to_dict() for one in defect_records(CLUSTERS, supports, seen, [[4, 5], []]))
+    first, second = (
+        one.to_dict() for one in defect_records(CLUSTERS, event_rows(CLUSTERS), supports, seen, [[4, 5], []])
+    )
     assert first["persistence"] == {"k": 2, "n": 3, "share": pytest.approx(2 / 3)}
     assert first["frames"][0] == {"frame_index": 7, "quality": 1.0, "detected": True}
     assert first["frames"][2]["detected"] is False

@@ -32,7 +32,7 @@ def model(indices: Sequence[int]) -> SparseModel:
 
 
 def place(found: Detection, settings: MappingSettings = PTS) -> Placement:
-    frames = FRAMES if settings.time_rule == "pts" else FRAMES.timed_by_rate(Fraction(25))
+    frames = FRAMES if settings.time_rule == "pts" else FRAMES.timed_by_rate([Fraction(25)])
     return place_detections([found], frames, REGISTERED, CROP, settings, model)[0]
 
 
@@ -77,12 +77,12 @@ def test_an_image_exactly_at_the_tolerance_is_too_far() -> None:
 def test_the_nearest_registered_image_wins_and_the_earlier_of_equals() -> None:
     wanted = [detection(0, 0.69), detection(1, 0.71), detection(2, 0.75), detection(3, 1.55)]
     assert match_frames(wanted, FRAMES, REGISTERED, 0.4) == {0: 3, 1: 4, 2: 4, 3: 8}
-    halfway = FRAMES.timed_by_rate(Fraction(10))
+    halfway = FRAMES.timed_by_rate([Fraction(10)])
     assert match_frames([detection(0, 0.25)], halfway, [0, 1], 0.4) == {0: 0}
 
 
 def test_average_rate_is_index_over_rate_not_presentation_time() -> None:
-    assert FRAMES.timed_by_rate(Fraction(30000, 1001))[4].time_s == pytest.approx(20 * 1001 / 30000)
+    assert FRAMES.timed_by_rate([Fraction(30000, 1001)])[4].time_s == pytest.approx(20 * 1001 / 30000)
 
 
 def test_every_detection_has_one_placement_in_input_order() -> None:

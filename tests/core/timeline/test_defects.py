@@ -24,7 +24,7 @@ A, B = (-0.8, 0.2, NEAR), (-0.35, 0.2, NEAR)
 def found_in(detections: Sequence[Detection], frames: Sequence[int] = FRAMES, **more: object) -> Found:
     made = scene(frames, detections, **more)  # type: ignore[arg-type]
     observations = place_on_surface(detections, made, times(), plates.no_matches, 0.4)
-    return find_defects(observations, made, times().time_of_index)
+    return find_defects(observations, made, times().moment_of_index)
 
 
 def in_turn(places: Sequence[tuple[float, float, float]], frames: Sequence[int] = FRAMES) -> list[Detection]:
@@ -119,7 +119,7 @@ def test_frames_that_show_it_smaller_than_any_box_are_not_asked() -> None:
     t = made.views.t.copy()
     t[5:, 2] += 6.0  # the cameras of the later frames stand far back
     back = replace(made, views=replace(made.views, t=t))
-    near, far = (find_defects(observations, one, times().time_of_index).defects[0] for one in (made, back))
+    near, far = (find_defects(observations, one, times().moment_of_index).defects[0] for one in (made, back))
     assert (near.k, near.n) == (4, 10)
     assert (far.k, far.n) == (4, 5)
     assert far.exists > near.exists
@@ -163,7 +163,7 @@ def test_a_visit_ends_after_three_frames_out_of_sight_that_last_half_a_second() 
 
 def test_events_and_records_agree() -> None:
     found = found_in(in_turn([A, B]))
-    events = event_rows(found, times().time_of_index)
+    events = event_rows(found, times().moment_of_index)
     assert [(event.event_id, event.defect_id, event.n_frames) for event in events] == [(0, 0, 10), (1, 1, 10)]
     first = defect_records(found, events, [[1, 2], [3]], 0)[0].to_dict()
     assert first["persistence"] == {"k": 10, "n": 10, "share": 1.0}
@@ -200,7 +200,7 @@ def test_estimates_join_a_defect_and_make_none() -> None:
         ("approximate", 0),
         ("approximate", None),
     ]
-    records = defect_records(found, event_rows(found, times().time_of_index), [[]], 0)
+    records = defect_records(found, event_rows(found, times().moment_of_index), [[]], 0)
     assert records[0].approximate_detections == (8,)
 
 

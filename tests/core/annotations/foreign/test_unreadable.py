@@ -15,6 +15,7 @@ from core.errors import BadInput
 from core.intake import answer, check_input
 from core.scene.detection import DETECTION_COLUMNS
 from core.settings import make_settings
+from core.videos import Recording
 from tests.core.making_annotations import zipped
 from tests.inputs import INPUTS
 
@@ -79,10 +80,10 @@ def test_what_is_wrong_with_a_known_form_is_said(data: bytes, part: str) -> None
 
 def test_a_video_and_annotations_in_the_wrong_order_are_told_apart() -> None:
     with pytest.raises(BadInput, match="in the wrong order") as caught:
-        check_input(SAMPLE, VIDEO, make_settings())
+        check_input([Recording(SAMPLE, VIDEO)], make_settings())
     assert caught.value.code == "swapped_files"
     roi = {"x0": 0.0, "y0": 0.0, "x1": 1.0, "y1": 1.0}
-    found = answer({"video": str(SAMPLE), "annotations": str(VIDEO), "roi": roi})
+    found = answer({"recordings": [{"video": str(SAMPLE), "annotations": str(VIDEO)}], "roi": roi})
     assert found["error"]["code"] == "swapped_files"
 
 

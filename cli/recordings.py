@@ -1,0 +1,78 @@
+"""The videos that a command names, each with its annotations."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from cli.annotation_file import annotation_file
+from core.annotations.foreign.unreadable import is_video_file
+from core.errors import BadInput
+from core.videos import Recording, require_count
+
+NONE = "-"
+"""Stands among annotation files for a video that has none."""
+
+
+def add_recordings(command: argparse.ArgumentParser) -> None:
+    """Let a command take videos and their annotations."""
+    command.add_argument(
+        "files",
+        type=Path,
+        nargs="+",
+        metavar="VIDEO",
+        help="file, folder or zip of pictures, pattern as f/%%04d.jpg; several are of one inspection, in order. "
+        "Behind a single video its annotations may follow: file or folder, see docs/annotations.md",
+    )
+    command.add_argument(
+        "--annotations",
+        type=Path,
+        nargs="+",
+        metavar="FILE",
+        help=f"annotations of every video, in the same order; {NONE} for a video without",
+    )
+
+
+@contextmanager
+def recordings_of(parsed: argparse.Namespace) -> Iterator[list[Recording]]:
+    """What the arguments of `add_recordings` name; folders of annotations are packed as long as the context lives.
+
+    Raises:
+        BadInput: there are not as many annotation files as videos, or more videos than an inspection may have.
+    """
+    with ExitStack() as stack:
+        yield [
+            Recording(
+                one.video, None if one.annotations is None else stack.enter_context(annotation_file(one.annotations))
+            )
+            for one in paired(parsed.files, parsed.annotations)
+        ]
+
+
+def paired(files: Sequence[Path], annotations: Sequence[Path] | None) -> list[Recording]:
+    """Videos with their annotations.
+
+    Without `annotations` the second of two files is the annotations of the first, unless its content is a video; of
+    more files all are videos.
+
+    Args:
+        files: as they stand on the command line.
+        annotations: what was given as such; None = nothing.
+    """
+    videos = list(files)
+    if annotations is None:
+        alone = len(files) == 2 and not is_video_file(files[1])
+        videos, annotations = (videos[:1], videos[1:]) if alone else (videos, [])
+    require_count(len(videos))
+    notes = [None if str(path) == NONE else path for path in annotations]
+    if notes and len(notes) != len(videos):
+        count = "1 annotation file" if len(notes) == 1 else f"{len(notes)} annotation files"
+        raise BadInput(
+            f"{count} for {len(videos)} video{'s' if len(videos) > 1 else ''}; give one for each, in order, and {NONE} "
+            "for a video without",
+            code="annotations_count",
+            where="--annotations",
+        )
+    return [Recording(video, note) for video, note in zip(videos, notes or [None] * len(videos), strict=True)]

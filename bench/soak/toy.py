@@ -45,7 +45,7 @@ GRAPH = Graph(
 
 def split(task: StageTask) -> StageResult:
     """Name the video by its content."""
-    return _write(task, hashlib.sha256(task.video.read_bytes()).digest(), {"n": _PARTS})
+    return _write(task, hashlib.sha256(task.recordings[0].video.read_bytes()).digest(), {"n": _PARTS})
 
 
 def part(task: StageTask) -> StageResult:

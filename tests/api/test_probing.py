@@ -18,6 +18,7 @@ from fastapi.testclient import TestClient
 from api.app import create_app
 from api.probing import Prober
 from core.settings import make_settings
+from core.videos import Recording
 from store.keys import Keys
 from store.settings import DeploymentSettings
 from tests.api.conftest import VIDEO, Backend, client_of, wait_until
@@ -165,7 +166,7 @@ def test_a_look_has_no_credential(backend: Backend, monkeypatch: pytest.MonkeyPa
 
     async def watch() -> str:
         prober = Prober(backend.services.settings)
-        check = asyncio.create_task(prober.check("me", VIDEO, None, make_settings()))
+        check = asyncio.create_task(prober.check("me", [Recording(VIDEO)], make_settings()))
         seen = ""
         while not check.done():
             for child in psutil.Process().children():

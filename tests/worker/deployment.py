@@ -56,7 +56,7 @@ class Deployment:
 
     def video(self, name: str) -> Path:
         """Where the stages find the video of an inspection; their wishes and notes lie beside it."""
-        return self.root / "artifacts" / self.inspections.get(name).files.video
+        return self.root / "artifacts" / self.inspections.get(name).files[0].video
 
     def create(self, name: str, options: dict[str, Any] | None = None, **wishes: dict[str, Any]) -> None:
         """An inspection as the API makes it, with a video of its own; wishes as in `Workplace.control`."""

@@ -57,7 +57,7 @@ SMALL = {"matching.window": 2}
 def split(task: StageTask) -> StageResult:
     """How many parts: the setting says."""
     _behave(task)
-    (task.out / "video.txt").write_text(hashlib.sha256(task.video.read_bytes()).hexdigest())
+    (task.out / "video.txt").write_text(hashlib.sha256(task.recordings[0].video.read_bytes()).hexdigest())
     return _done(task, {"n": task.settings.matching.window})
 
 
@@ -85,7 +85,8 @@ def join(task: StageTask) -> StageResult:
 def last(task: StageTask) -> StageResult:
     """What the annotations said, beside the joined hash."""
     _behave(task)
-    said = task.annotations.read_text() if task.annotations else ""
+    notes = task.recordings[0].annotations
+    said = notes.read_text() if notes else ""
     (task.out / "last.txt").write_text((task.input("join") / "joined.txt").read_text() + said)
     return _done(task, {"said": said})
 
@@ -97,21 +98,21 @@ def _done(task: StageTask, facts: Facts) -> StageResult:
 
 def _note(task: StageTask, what: str) -> None:
     line = f"{what} {task.key} {os.getpid()} {task.threads}\n".encode()
-    descriptor = os.open(task.video.parent / "journal.txt", os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+    descriptor = os.open(task.recordings[0].video.parent / "journal.txt", os.O_WRONLY | os.O_APPEND | os.O_CREAT)
     os.write(descriptor, line)
     os.close(descriptor)
 
 
 def _behave(task: StageTask) -> None:
-    path = task.video.parent / "control.json"
+    path = task.recordings[0].video.parent / "control.json"
     control = json.loads(path.read_text()) if path.exists() else {}
     wish = {**control.get("all", {}), **control.get(task.key, {})}
-    starts = journal(task.video).count(f"start {task.key}")
+    starts = journal(task.recordings[0].video).count(f"start {task.key}")
     _note(task, "start")
     if starts >= wish.get("times", 1000):
         return
     if wish.get("tell"):
-        (task.video.parent / "told.json").write_text(json.dumps(_what_a_child_knows()))
+        (task.recordings[0].video.parent / "told.json").write_text(json.dumps(_what_a_child_knows()))
     if wish.get("helper"):
         helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(100)"])
         _note(task, f"helper {helper.pid}")

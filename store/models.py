@@ -225,6 +225,7 @@ class DetectionRow(_Row, Base):
     outcome: Mapped[str] = mapped_column(String(16))
     reason: Mapped[str | None] = mapped_column(String(64))
     rung: Mapped[str | None] = mapped_column(String(16))
+    video: Mapped[int] = mapped_column(default=0)
 
 
 @with_columns_of(declared_events.EventRow, also_null=("defect_id", "x", "y", "z", "radius"))
@@ -234,6 +235,7 @@ class EventRow(_Row, Base):
     __tablename__ = "events"
 
     event_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    video: Mapped[int] = mapped_column(default=0)
 
 
 class DefectRow(_Row, Base):

@@ -197,3 +197,40 @@ def test_a_folder_that_is_no_result(tmp_path: Path) -> None:
         Result(tmp_path)
     with pytest.raises(BadInput, match=r"defects\.json"):
         defect_place(tmp_path, 0)
+
+
+@pytest.fixture
+def two_videos(folder: Path, tmp_path: Path) -> Path:
+    """The same result, with frames from 5 on in a second video of which every tenth took part as well."""
+    root = tmp_path / "two"
+    shutil.copytree(folder, root)
+    rows = [f"{i},{10 * (i % 5)},{0.5 * (i % 5)},{int(i >= 5)}" for i in range(10)]
+    (root / "frames.csv").write_text("\n".join(["index,source_index,time_s,video", *rows]) + "\n")
+    summary = json.loads((root / "summary.json").read_text())
+    summary["frame"]["videos"] = [{"n_frames": 50, "duration_s": 2.5}, {"n_frames": 70, "duration_s": 3.5}]
+    (root / "summary.json").write_text(json.dumps(summary))
+    return root
+
+
+def test_a_question_names_its_video(two_videos: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    result = Result(two_videos)
+    x, y = source_pixel(PLACE, 9)
+    assert result.point_at(40, x, y, 1).frame_index == 9
+    assert result.point_at(40, x, y).frame_index == 4
+    assert result.frame_at(3.4, 1) == 40
+    assert {one.video for one in result.frames_seeing(np.array(PLACE))} == {0, 1}
+    assert {one.frame_index for one in result.frames_seeing(np.array(PLACE), 1)} <= {5, 9}
+    assert main(["point", str(two_videos), "--video", "1", "--time", "0", "--pixel", f"{x},{y}", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["video"] == 1
+
+
+def test_what_is_outside_a_video_is_told_with_its_number(two_videos: Path) -> None:
+    result = Result(two_videos)
+    with pytest.raises(BadInput, match=r"3 s is outside video 0: 0 to 2\.5 s"):
+        result.frame_at(3.0)
+    with pytest.raises(BadInput, match="video 1 has no frame 70: 0 to 69"):
+        result.point_at(70, 1, 1, 1)
+    for ask in (lambda: result.frame_at(0.0, 2), lambda: result.frames_seeing(np.array(PLACE), -1)):
+        with pytest.raises(BadInput, match="there is no video -?[12]: 0 to 1") as caught:
+            ask()
+        assert caught.value.where == "--video"

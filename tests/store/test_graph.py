@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import store.graph
@@ -22,3 +24,13 @@ def test_other_weights_make_another_result(stage: str, uses: bool, monkeypatch: 
     before = name_of(stage)
     monkeypatch.setattr(store.graph, "weights_digest", lambda name: f"another {name}")
     assert (name_of(stage) != before) is uses
+
+
+def test_every_video_is_in_the_name_of_what_reads_videos_and_one_alone_as_ever() -> None:
+    probe, a, b = TaskSpec("probe"), InputFiles("a", "a" * 64, None, None), InputFiles("b", "b" * 64, None, None)
+
+    def name(*files: InputFiles) -> str:
+        return CORE_GRAPH.fingerprint(probe, make_settings("draft"), {}, files)
+
+    assert len({name(a), name(b), name(a, b), name(b, a)}) == 4
+    assert name(a, b) == name(replace(a, video="elsewhere"), b)

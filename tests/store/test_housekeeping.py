@@ -16,6 +16,7 @@ from store.housekeeping import Retention
 from store.inspections import Inspections
 from store.models import Inspection, MetricRow, Result, Task, Upload
 from store.plan import Plan
+from store.records import InputFiles
 from tests.store.small_plan import FILES, GRAPH, INPUT, result_for
 
 
@@ -125,3 +126,14 @@ def test_a_graph_is_named_by_module_and_name(name: str) -> None:
     assert load_graph("store.graph:CORE_GRAPH") is CORE_GRAPH
     with pytest.raises(BadInput):
         load_graph(name)
+
+
+def test_files_of_further_videos_are_in_use_as_long(retention: Retention) -> None:
+    further = InputFiles("/w.mp4", "2" * 64, None, None)
+    Inspections(retention.db, GRAPH).create("several", (INPUT, further), make_settings(), "")
+    assert "2" * 64 in retention.inputs_in_use()
+    assert "2" * 64 in retention.inputs_at_work()
+    Inspections(retention.db, GRAPH).reopen("several", FILES, make_settings())
+    assert "2" * 64 not in retention.inputs_in_use()
+    Inspections(retention.db, GRAPH).reopen("several", (further, INPUT), make_settings())
+    assert [one.video for one in Inspections(retention.db, GRAPH).get("several").files] == ["/w.mp4", "/v.mp4"]

@@ -12,6 +12,7 @@ from core.matching.jumps import (
     positions,
     spans_any,
 )
+from core.videos import moment
 from core.viewgraph import PairTable
 from core.windows import sequential_pairs
 
@@ -94,3 +95,9 @@ def test_pairs_sought_over_a_gap_need_their_matches_too() -> None:
 def test_frames_added_later_stand_where_their_time_falls() -> None:
     times = [0.0, 1.0, 2.0, 3.0, 1.5]
     assert positions(times, 4).tolist() == [0.0, 1.0, 2.0, 3.0, 1.5]
+
+
+def test_a_frame_added_at_the_end_of_a_video_stays_before_the_cut() -> None:
+    times = [0.0, 1.0, moment(1, 0.0), moment(1, 1.0), 1.5, moment(1, 0.5), moment(1, -0.0)]
+    videos = [0, 0, 1, 1, 0, 1, 1]
+    assert positions(times, 4, videos).tolist() == [0.0, 1.0, 2.0, 3.0, 1.0, 2.5, 2.0]

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from core.matching.pairs import match_pairs, pairs_of_chunk
+from core.videos import moment
 from core.windows import sequential_pairs
 
 
@@ -25,3 +26,13 @@ def test_chunks_share_no_pair_and_miss_none() -> None:
     pairs = match_pairs([float(i) for i in range(20)] + [3.5, 18.9], 20, 3)
     chunks = [pairs_of_chunk(pairs, start, min(start + 8, 22)) for start in range(0, 22, 8)]
     assert [pair for chunk in chunks for pair in chunk] == pairs
+
+
+def test_no_pair_reaches_over_the_cut_between_two_videos() -> None:
+    videos = [0] * 5 + [1] * 5 + [0, 1]
+    times = [moment(video, t) for video, t in zip(videos, [*range(5), *range(5), 3.5, 0.5], strict=True)]
+    pairs = match_pairs(times, 10, 3, videos)
+    assert {(videos[i], videos[j]) for i, j in pairs} == {(0, 0), (1, 1)}
+    assert [pair for pair in pairs if pair[1] == 10] == [(1, 10), (2, 10), (3, 10), (4, 10)]
+    assert [pair for pair in pairs if pair[1] == 11] == [(5, 11), (6, 11), (7, 11), (8, 11)]
+    assert [pair for pair in pairs if pair[1] < 5] == sequential_pairs(5, 3)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,21 @@ def test_one_event_per_cluster() -> None:
     assert (first.n_detections, first.n_frames) == (3, 2)
     assert (first.x, first.y, first.z) == pytest.approx((0.1, 0, 0))
     assert (second.event_id, second.defect_id, second.label) == (1, 1, "burn")
+
+
+def test_a_cluster_of_two_videos_is_one_defect_with_an_event_in_each() -> None:
+    rows = [replace(row, video=int(row.time_s > 1.5)) for row in ROWS]
+    clusters = cluster_detections(rows, 1.0)
+    events = event_rows(clusters)
+    assert [(event.video, event.defect_id, event.start_s) for event in events] == [
+        (0, 0, 1.0),
+        (1, 1, 2.0),
+        (1, 0, 4.0),
+    ]
+    assert [event.event_id for event in events] == [0, 1, 2]
+    supports = {row.id: np.zeros((1, 3)) for row in rows}
+    records = defect_records(clusters, events, supports, [[], []], [[], []])
+    assert [record.events for record in records] == [(0, 2), (1,)]
 
 
 def test_rows_get_their_defect_and_keep_their_order() -> None:

@@ -11,9 +11,11 @@ import pytest
 from core.mapping.observations import Observation
 from core.mapping.surface_rules import place_on_surface
 from core.scene.detection import Detection
+from core.scene.frame import RunFrames
 from core.timeline.defects import Found, defect_records, event_rows, find_defects
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.seen import views_of_place, visits
+from core.videos import moment
 from tests.core import making_plates as plates
 from tests.core.making_plates import NEAR, detection, scene, times
 
@@ -82,13 +84,16 @@ def test_one_track_reaches_twice_as_far_and_over_labels() -> None:
         row = replace(some[k].row, x=A[0] + shift * reach, y=A[1], z=A[2], label=label)
         return replace(some[k], row=row, track_id=track, radius=some[0].radius, sigma=some[0].sigma)
 
-    def groups(track: str | None) -> list[list[int]]:
+    def groups(track: str | None, video: int = 0) -> list[list[int]]:
         middle = [at(k, 0.75, "dent", None) for k in range(1, 6)]
-        return group_observations([at(0, 0.0, "dent", "7"), *middle, at(6, 1.55, "nick", track)])
+        last = at(6, 1.55, "nick", track)
+        last = replace(last, row=replace(last.row, video=video))
+        return group_observations([at(0, 0.0, "dent", "7"), *middle, last])
 
     assert [len(members) for members in groups("7")] == [7]
     assert [len(members) for members in groups("8")] == [6, 1]
     assert [len(members) for members in groups(None)] == [6, 1]
+    assert [len(members) for members in groups("7", video=1)] == [6, 1], "every file numbers its tracks by itself"
 
 
 def _placed(detections: Sequence[Detection]) -> list[Observation]:
@@ -159,6 +164,30 @@ def test_a_visit_ends_after_three_frames_out_of_sight_that_last_half_a_second() 
     assert visits([1, 6], [1, 2, 6], at) == [[1], [6]], "frames 3, 4, 5"
     assert visits([1, 5], [1, 2, 5], at) == [[1, 5]], "frames 3, 4 only"
     assert visits([1, 5], [1, 5], {i: 0.24 * i for i in range(20)}) == [[1, 5]], "0.48 s"
+
+
+def test_a_visit_ends_with_its_video() -> None:
+    at = {0: 0.0, 1: 0.1, 2: moment(1, 0.0), 3: moment(1, 0.1)}
+    assert visits([0, 1, 2, 3], [0, 1, 2, 3], at) == [[0, 1], [2, 3]]
+
+
+def test_an_event_is_of_one_video_and_ordered_by_it() -> None:
+    """Frames 5 to 9 are a second video, whose times begin anew."""
+    whole = times()
+    rows = [replace(f, video=1, time_s=f.time_s - 0.5) if f.index >= 5 else f for f in whole]
+    frames = RunFrames(tuple(rows))
+    moved = [
+        replace(one, video=1, source_index=one.source_index, time_s=one.time_s - 0.5) if one.source_index >= 5 else one
+        for one in in_turn([A])
+        if one.source_index is not None
+    ]
+    observations = place_on_surface(moved, scene(FRAMES, moved), frames, plates.no_matches, 0.4)
+    found = find_defects(observations, scene(FRAMES, moved), frames.moment_of_index)
+    events = event_rows(found, frames.moment_of_index)
+    assert len(found.defects) == 1
+    assert [(event.video, event.n_detections) for event in events] == [(0, 5), (1, 5)]
+    assert events[0].start_s == events[1].start_s == 0.0
+    assert [event.end_s for event in events] == pytest.approx([0.4, 0.4])
 
 
 def test_events_and_records_agree() -> None:

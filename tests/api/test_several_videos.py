@@ -69,6 +69,7 @@ def test_two_videos_over_real_http_are_looked_into_and_kept_in_order(
             part("annotations", b""),
             part("annotations", KEYS),
         ],
+        timeout=60.0,
     )
     assert answer.status_code == 202, answer.text
     assert answer.json()["videos"] == sent.raw["videos"], "an empty part stands for none"

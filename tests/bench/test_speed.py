@@ -28,7 +28,7 @@ from tests.core.making_rows import run_frames
 
 
 def make_run(out: Path, **folders: Path) -> FinishedRun:
-    return FinishedRun(out, make_settings(), out / "video.mp4", dict(folders), {})
+    return FinishedRun(out, make_settings(), dict(folders), {})
 
 
 def test_sides_take_turns() -> None:

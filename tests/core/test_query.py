@@ -231,6 +231,6 @@ def test_what_is_outside_a_video_is_told_with_its_number(two_videos: Path) -> No
     with pytest.raises(BadInput, match="video 1 has no frame 70: 0 to 69"):
         result.point_at(70, 1, 1, 1)
     for ask in (lambda: result.frame_at(0.0, 2), lambda: result.frames_seeing(np.array(PLACE), -1)):
-        with pytest.raises(BadInput, match="there is no video -?[12]: 0 to 1") as caught:
+        with pytest.raises(BadInput, match=r"there is no video -?[12]: 0 to 1") as caught:
             ask()
         assert caught.value.where == "--video"

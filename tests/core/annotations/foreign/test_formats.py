@@ -15,6 +15,7 @@ from core.annotations.foreign.sheet import Sheet, counted, number_in_name
 from core.annotations.load import load_annotations
 from core.annotations.placed import place
 from core.errors import BadInput
+from core.scene.frame import SourceFrame
 from core.settings.groups import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameTable
@@ -53,7 +54,7 @@ def test_the_dent_of_every_example_is_on_its_frame(
     annotations = load_annotations(FOREIGN / name, FRAME)
     placed = place(annotations, table)
     assert annotations.format == form
-    assert list(placed.looked_at) == frames
+    assert [source.source_index for source in placed.looked_at] == frames
     assert {d.label for d in placed.detections} == {"dent"}
     assert placed.detections[0].source_index == frames[0]
     assert placed.detections[0].box == pytest.approx(box)
@@ -65,7 +66,8 @@ def test_yolo_is_a_folder_of_texts(table: FrameTable) -> None:
     annotations = read(zipped({"turbine_1.txt": text, "turbine_96.txt": ""}))
     placed = place(annotations, table)
     (detection,) = placed.detections
-    assert (placed.looked_at, detection.source_index, detection.label) == ((0, 95), 0, "0")
+    assert placed.looked_at == (SourceFrame(0, 0), SourceFrame(0, 95))
+    assert (detection.source, detection.label) == (SourceFrame(0, 0), "0")
     assert detection.score == 0.91
     assert detection.box == pytest.approx((0.45665, 0.46775, 0.49875, 0.52325))
     assert "labels are their numbers" in annotations.warnings[0]

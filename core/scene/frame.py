@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
@@ -39,8 +39,8 @@ class SourceFrame(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Frame:
-    """One frame of the run; the fields are the keys of its JSON form, in order."""
+class _FrameFields:
+    """What a frame of the run and a row of ``frames.csv`` have in common, and begin with."""
 
     index: int
     """Number of the frame, from 0 by time, which names its image and counts in windows; it runs on over the videos, and
@@ -56,7 +56,13 @@ class Frame:
     cropping."""
     role: Role
     """Why it takes part: `sampled`, `annotated`, `both`, `neighbour` or `added`."""
-    video: int = field(default=0, kw_only=True)
+
+
+@dataclass(frozen=True)
+class Frame(_FrameFields):
+    """One frame of the run; the fields are the keys of its JSON form, in order."""
+
+    video: int = 0
     """Number of its video, from 0 in the order given."""
 
     @property
@@ -75,13 +81,19 @@ class Frame:
 
 
 @dataclass(frozen=True)
-class FrameRow(Frame):
+class FrameRow(_FrameFields):
     """One row of ``frames.csv``; the fields are its columns, in order."""
 
     registered: int
     """1 for a frame that is in a model, else 0."""
     model: int | None
     """Number of that model."""
+    video: int = 0
+    """Number of its video, from 0 in the order given."""
+
+    def to_dict(self) -> JsonObject:
+        """JSON form, keys in the order of the columns."""
+        return asdict(self)
 
 
 FRAME_COLUMNS: tuple[str, ...] = tuple(FrameRow.__dataclass_fields__)

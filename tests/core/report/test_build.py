@@ -16,7 +16,7 @@ from core.states import RunState, TaskState
 from tests.core.making_record import failed_record, full_record, with_check
 
 COLUMNS = {
-    "frames.csv": "index source_index pts time_s sha256 role video registered model",
+    "frames.csv": "index source_index pts time_s sha256 role registered model video",
     "cases.csv": "name kind start end status reason frames models registered_images points3D "
     "mean_reprojection_error_px median_reprojection_error_px seconds start_mode selected vetoed",
     "mapping/detections.csv": "id key time_s label score box_x1 box_y1 box_x2 box_y2 frame_index outcome reason rung "

@@ -18,7 +18,8 @@ from core.io.frames import image_path, read_frames
 from core.scene.frame import SourceFrame
 from core.settings import make_settings
 from core.stage import StageTask
-from core.stages import annotations, frames, probe
+from core.stages import annotations as annotations_stage
+from core.stages import frames, probe
 from core.video.table import read_tables
 from core.videos import Recording
 from tests.core.making_videos import every_ms, make_video
@@ -36,7 +37,7 @@ def write(path: Path, keys: Sequence[str]) -> Path:
 def run(recordings: Sequence[Recording], out: Path, upto: str = "frames") -> dict[str, Any]:
     """Facts of the stages by name; their files lie in folders of these names."""
     facts: dict[str, Any] = {}
-    for name, stage in (("probe", probe), ("annotations", annotations), ("frames", frames)):
+    for name, stage in (("probe", probe), ("annotations", annotations_stage), ("frames", frames)):
         folder = out / name
         folder.mkdir(parents=True)
         inputs = {key: out / key for key in facts}

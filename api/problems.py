@@ -111,7 +111,7 @@ class Refused(Exception):
 
 
 def not_found(what: str) -> Refused:
-    """404: there is no such thing, or it belongs to another key."""
+    """404: there is no such thing, or it belongs to another account."""
     return Refused(HTTPStatus.NOT_FOUND, "not_found", f"there is no such {what}")
 
 
@@ -132,8 +132,14 @@ def answer(request: Request, error: Refused | SQLAlchemyError) -> JSONResponse:
 
 
 def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI's entries for the problems that a route may answer with."""
-    return {status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in statuses}
+    """OpenAPI's entries for the problems that a route may answer with.
+
+    Who has to say who asks (401) may also be somebody who may not do this (403).
+    """
+    also = {403} if 401 in statuses else set()
+    return {
+        status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in sorted(also.union(statuses))
+    }
 
 
 def status_of(error: BladeAtlasError) -> HTTPStatus:

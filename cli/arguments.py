@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from cli.account_arguments import add_account_commands
 from cli.annotation_file import add_format
 from cli.remote_arguments import add_remote_commands
 from cli.terminal import say
@@ -82,6 +83,7 @@ def parser() -> argparse.ArgumentParser:
     _json(options)
     _json(_add(commands, "version", "print the versions of this program and of the engines it uses"))
     add_remote_commands(commands, _EXIT_CODES)
+    add_account_commands(commands)
     return top
 
 

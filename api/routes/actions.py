@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from api.auth import CallerOf
+from api.auth import Submitter
 from api.finding import find_inspection
 from api.limits import require_space
 from api.problems import FieldError, Refused, pointer, responses
@@ -53,7 +53,7 @@ class Retry(BaseModel):
     summary="Stop an inspection",
     responses=responses(401, 404, 409, 410, 503),
 )
-async def cancel(request: Request, caller: CallerOf, inspection_id: str) -> Response:
+async def cancel(request: Request, caller: Submitter, inspection_id: str) -> Response:
     """Ask to stop; every process of it is gone within 10 s. Asking again changes nothing; 409 once it is over."""
     state = state_of(request)
     await run_in_threadpool(_cancel, state.services, inspection_id, caller.owner)
@@ -76,7 +76,7 @@ def _cancel(services: Services, inspection_id: str, owner: str) -> None:
     summary="Try an inspection again",
     responses=responses(400, 401, 404, 409, 410, 422, 429, 503, 507),
 )
-async def retry(request: Request, caller: CallerOf, inspection_id: str, body: Retry | None = None) -> Response:
+async def retry(request: Request, caller: Submitter, inspection_id: str, body: Retry | None = None) -> Response:
     """Begin the next attempt: what is unchanged is taken over, parameters may change. 409 while it is active."""
     state = state_of(request)
     await run_in_threadpool(_retry, state.services, inspection_id, caller.owner, body or Retry())

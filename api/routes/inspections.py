@@ -12,7 +12,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from api import schemas
-from api.auth import Caller, CallerOf
+from api.auth import Caller, Reader, Submitter
 from api.finding import find_inspection, gone, is_id
 from api.negotiation import matches
 from api.paging import next_link
@@ -50,7 +50,7 @@ _LATER = {"Retry-After": {"description": "seconds, while it is active", "schema"
 )
 async def create(
     request: Request,
-    caller: CallerOf,
+    caller: Submitter,
     idempotency_key: Annotated[
         str | None,
         Header(
@@ -121,7 +121,7 @@ def _send(snapshot: Snapshot, status: HTTPStatus, headers: dict[str, str]) -> Re
 )
 async def look(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     wait: Annotated[
         float,
@@ -153,7 +153,7 @@ async def look(
 def listing(
     request: Request,
     response: Response,
-    caller: CallerOf,
+    caller: Reader,
     state: Annotated[list[schemas.State] | None, Query(description="any of these", examples=[["running"]])] = None,
     label: Annotated[Text | None, Query(description="exactly this label")] = None,
     external_id: Annotated[Text | None, Query(description="exactly this external id")] = None,
@@ -199,7 +199,7 @@ def _moment(value: datetime | None, name: str) -> datetime | None:
     summary="Delete an inspection",
     responses=responses(401, 404, 410, 503),
 )
-async def delete(request: Request, caller: CallerOf, inspection_id: str) -> Response:
+async def delete(request: Request, caller: Submitter, inspection_id: str) -> Response:
     """Stop it if it is active, and remove it: from now on its id answers 410; files go soon after."""
     state = state_of(request)
     await run_in_threadpool(_delete, state, inspection_id, caller.owner)

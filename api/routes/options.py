@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from api.auth import caller
+from api.auth import requires
 from api.problems import responses
 from api.schemas import Parameters
 from api.state import state_of
@@ -16,8 +16,11 @@ from api.submit import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
 from core.annotations.form import json_schema
 from core.settings import PRESET_NAMES, Settings, make_settings, option_names
 from core.settings.describe import describe_options
+from store.account_models import Scope
 
-router = APIRouter(prefix="/v1", tags=["options"], dependencies=[Depends(caller)], responses=responses(401))
+router = APIRouter(
+    prefix="/v1", tags=["options"], dependencies=[Depends(requires(Scope.READ))], responses=responses(401)
+)
 
 _SCHEMA_TYPE = "application/schema+json"
 

@@ -101,9 +101,9 @@ class Asked:
 
 @pytest.fixture
 def asked(backend: Backend, unprobed: None) -> Asked:
-    view, key = Keys(backend.db).create("generated requests")
+    key = Keys(backend.db).create("generated requests")[1]
     files = {"quality.json": b'{"verdict": "ok", "flags": []}', "mapping/timeline.csv": b"event_id\r\n"}
-    one = backend.finished("one", files, owner=view.id, **ROWS)
+    one = backend.finished("one", files, **ROWS)
     return Asked(create_app(backend.services), one, {"Authorization": f"Bearer {key}"})
 
 

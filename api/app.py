@@ -8,6 +8,7 @@ from fastapi import Depends, FastAPI
 from prometheus_client import CollectorRegistry
 
 from api import openapi, problems
+from api.auditing import Auditor
 from api.middleware import RequestMetrics, RequestMiddleware, known_query
 from api.probing import Prober
 from api.resource import Resources
@@ -30,8 +31,11 @@ from api.trust import TrustMiddleware
 from api.watching import Watcher
 from core.errors import BadInput
 from core.versions import program_version
+from store.audit import AuditLog
 from store.keys import KeyRing, Keys
+from store.request_rate import RequestRate
 from store.settings import deployment_settings
+from store.web_sessions import WebSessions
 
 _ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames)
 
@@ -62,7 +66,9 @@ def create_app(services: Services | None = None) -> FastAPI:
     openapi.install(app)
     # The last one added is the first that sees a request: refusals are named and counted too.
     app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=state.services.settings.host_names())
-    app.add_middleware(RequestMiddleware, metrics=RequestMetrics(state.registry))
+    app.add_middleware(
+        RequestMiddleware, metrics=RequestMetrics(state.registry), auditor=Auditor(AuditLog(state.services.db))
+    )
     for module in _ROUTERS:
         app.include_router(module.router)
     return app
@@ -87,4 +93,6 @@ def _state(services: Services) -> State:
         watcher=Watcher(resources.snapshot),
         prober=Prober(services.settings),
         registry=registry,
+        rate=RequestRate(services.db, services.settings),
+        sessions=WebSessions(services.db),
     )

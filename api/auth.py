@@ -1,4 +1,8 @@
-"""Who calls: an account, by one of its keys, or, as long as no key was ever made, whoever calls from this machine."""
+"""Who calls: an account, by one of its keys, or, as long as no key was ever made, whoever calls from this machine.
+
+A browser that showed a key once goes on with a cookie. A cookie comes along without anybody's will, so it counts only
+in requests of the server's own pages, and for changes only beside a header that no foreign page can add.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +17,17 @@ from starlette.concurrency import run_in_threadpool
 
 from api.problems import Refused
 from api.state import State, state_of
-from api.trust import is_loopback_address
+from api.trust import is_loopback_address, is_own_site
 from store.account_models import DEFAULT_ACCOUNT, Scope
 from store.keys import KeyView, utc_now
 
 BEARER = HTTPBearer(
     auto_error=False, description="API key from `bladeatlas keys create`. Without any key the server serves loopback."
 )
+COOKIE = "bladeatlas_session"
+WRITE_HEADER = "X-BladeAtlas-Write"
+"""Any value of it will do: a page of another origin cannot send it without being allowed to."""
+READS = ("GET", "HEAD", "OPTIONS")
 _CHALLENGE = {"WWW-Authenticate": "Bearer"}
 
 
@@ -43,8 +51,22 @@ class Caller:
 async def caller(
     request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Depends(BEARER)]
 ) -> Caller:
-    """The caller of a request; 401 for a missing key and for one that is not valid."""
-    state: State = state_of(request)
+    """The caller of a request.
+
+    Raises:
+        Refused: 401 for a missing key or session, and for one that is not valid; 403 for a session that a foreign page
+            uses, or that changes something without the header for it.
+        LimitReached: the account, or all together, ask too often.
+    """
+    state = state_of(request)
+    found = await _identified(request, state, credentials)
+    request.state.caller = found  # for the audit log, also of requests that are refused below
+    if not state.rate.spend(found.owner):
+        await run_in_threadpool(state.rate.spend_slowly, found.owner)
+    return found
+
+
+async def _identified(request: Request, state: State, credentials: HTTPAuthorizationCredentials | None) -> Caller:
     ring = state.keys
     if not ring.fresh:
         await run_in_threadpool(ring.refresh)
@@ -54,17 +76,32 @@ async def caller(
         raise _unauthorized(
             "no API key was made yet, so only this machine is served; make one with `bladeatlas keys create`"
         )
-    if credentials is None:
+    if credentials is not None:
+        key = _valid(ring.find(credentials.credentials), "this API key is not valid")
+    elif COOKIE in request.cookies:
+        key_id = await run_in_threadpool(state.sessions.find, request.cookies[COOKIE])
+        key = _valid(ring.by_id(key_id or ""), "this session is over")
+        _require_own_will(request)
+    else:
         raise _unauthorized("an API key is needed: Authorization: Bearer KEY")
-    key = _valid(ring.find(credentials.credentials))
     if ring.unnoted(key.id):
         await run_in_threadpool(ring.keys.note_use, key.id)
     return Caller(key.account_id, key.id, frozenset(key.scopes))
 
 
-def _valid(key: KeyView | None) -> KeyView:
+def _require_own_will(request: Request) -> None:
+    """403 for a request with a cookie that a foreign page may have made a browser send."""
+    if not is_own_site(request):
+        detail = "a session is for pages of this server; use a key from elsewhere"
+        raise Refused(HTTPStatus.FORBIDDEN, "cross_site", detail, where="Origin")
+    if request.method not in READS and WRITE_HEADER not in request.headers:
+        detail = f"with a session a change needs the header {WRITE_HEADER}: 1"
+        raise Refused(HTTPStatus.FORBIDDEN, "missing_header", detail, where=WRITE_HEADER)
+
+
+def _valid(key: KeyView | None, otherwise: str) -> KeyView:
     if key is None:
-        raise _unauthorized("this API key is not valid")
+        raise _unauthorized(otherwise)
     ended = key.ended(utc_now())
     if ended is not None:
         raise _unauthorized(f"this API key {ended}")
@@ -98,3 +135,5 @@ Manager = Annotated[Caller, Depends(requires(Scope.MANAGE))]
 """Parameter of a route about keys of the caller's account."""
 Administrator = Annotated[Caller, Depends(requires(Scope.ADMIN))]
 """Parameter of a route about all accounts."""
+AnyCaller = Annotated[Caller, Depends(caller)]
+"""Parameter of a route for any valid key."""

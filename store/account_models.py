@@ -1,11 +1,11 @@
-"""Tables of accounts: whose things are, who calls in their name, and what they may use."""
+"""Tables of accounts: whose things are, who calls in their name, what they may use, and what they did."""
 
 from __future__ import annotations
 
 from datetime import datetime
 from enum import StrEnum
 
-from sqlalchemy import BigInteger, ForeignKey, String
+from sqlalchemy import BigInteger, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from store.columns import Base
@@ -76,3 +76,53 @@ class ApiKey(Base):
     revoked_at: Mapped[datetime | None]
     last_used_at: Mapped[datetime | None]
     """Right to a minute; not written at every request."""
+
+
+class WebSession(Base):
+    """A browser that showed a key once. What it holds is the cookie, of which the hash is kept."""
+
+    __tablename__ = "sessions"
+
+    digest: Mapped[str] = mapped_column(String(64), primary_key=True)
+    """SHA-256 of 256 random bits."""
+    key_id: Mapped[str] = mapped_column(String(64), ForeignKey("api_keys.id"), index=True)
+    """Its session is good for what the key is good for, and as long as the key at most."""
+    created_at: Mapped[datetime]
+    expires_at: Mapped[datetime] = mapped_column(index=True)
+
+
+class RequestCount(Base):
+    """Requests that servers may answer within a minute of the clock; see `store.request_rate`."""
+
+    __tablename__ = "request_counts"
+
+    owner: Mapped[str] = mapped_column(String(64), primary_key=True)
+    """Id of the account; empty for all together."""
+    minute: Mapped[datetime] = mapped_column(primary_key=True)
+    taken: Mapped[int]
+    """Answered, or set aside by a server for those that it will be asked."""
+
+
+class AuditEntry(Base):
+    """A request that would change something, and what came of it; see `store.audit`."""
+
+    __tablename__ = "audit"
+    __table_args__ = (Index("ix_audit_account_id_id", "account_id", "id"), {"sqlite_autoincrement": True})
+
+    id: Mapped[int] = mapped_column(primary_key=True)
+    at: Mapped[datetime] = mapped_column(index=True)
+    account_id: Mapped[str] = mapped_column(String(64))
+    """Empty when nobody proved who asks."""
+    key_id: Mapped[str] = mapped_column(String(64))
+    """Empty without a key."""
+    action: Mapped[str] = mapped_column(String(128))
+    """Method and route, e.g. ``POST /v1/inspections/{inspection_id}/retry``; of a command, its words."""
+    target: Mapped[str] = mapped_column(String(256))
+    """Path of the request, without its query; what a command was about."""
+    status: Mapped[int]
+    """Of HTTP; 200 for a command that was carried out."""
+    code: Mapped[str] = mapped_column(String(64))
+    """Of the problem; empty when it was accepted."""
+    request_id: Mapped[str] = mapped_column(String(64))
+    times: Mapped[int]
+    """Requests like this one that the row stands for, itself included."""

@@ -14,8 +14,11 @@ from sqlalchemy.orm import Session
 from core.errors import BadInput
 from store.account_models import Account
 from store.db import Database
+from store.settings import DeploymentSettings
 
 HIGHEST_PRIORITY = 9
+LIMITS = ("max_active", "max_open_uploads", "max_promised_bytes", "max_kept_bytes", "max_requests_per_minute")
+"""Limits that hold in all and for one account."""
 _ID = re.compile(r"[a-z0-9][a-z0-9-]{0,63}")
 _LEAST: Mapping[str, int] = {
     "retention_days": 0,
@@ -94,6 +97,16 @@ class Accounts:
         with self.db.read() as session:
             return _view(_found(session, account_id))
 
+    def limits(self, account_id: str, settings: DeploymentSettings) -> dict[str, int]:
+        """What an account may use, by the names of the deployment's settings, e.g. ``max_active_per_owner``."""
+        with self.db.read() as session:
+            return {f"{name}_per_owner": owner_limit(session, settings, account_id, name) for name in LIMITS}
+
+    def retention_days(self, account_id: str, settings: DeploymentSettings) -> float:
+        """Days until an inspection of the account is removed; 0 = never."""
+        own = self.get(account_id).retention_days
+        return settings.retention_days if own is None else own
+
     def all(self) -> list[AccountView]:
         """Every account, oldest first, those that were closed included."""
         with self.db.read() as session:
@@ -106,6 +119,17 @@ def open_account(session: Session, account_id: str) -> Account:
     if row.closed_at is not None:
         raise BadInput(f"the account '{account_id}' was closed", code="conflict", where="account")
     return row
+
+
+def owner_limit(session: Session, settings: DeploymentSettings, owner: str, name: str) -> int:
+    """What one account may use of something: its own value, or else the deployment's for one owner.
+
+    Args:
+        name: of the limit in all, e.g. ``max_active``; the deployment's for one owner is ``max_active_per_owner``.
+    """
+    account = session.get(Account, owner)
+    own = None if account is None else getattr(account, name)
+    return int(getattr(settings, f"{name}_per_owner") if own is None else own)
 
 
 def _found(session: Session, account_id: str) -> Account:

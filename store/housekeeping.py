@@ -12,6 +12,7 @@ from datetime import timedelta
 
 from sqlalchemy import delete, or_, select
 
+from store.account_models import AuditEntry, RequestCount, WebSession
 from store.db import Database
 from store.leasing import lock_inspection
 from store.models import (
@@ -39,6 +40,7 @@ class Retention:
     """What has outlived its use, in one database."""
 
     db: Database
+    audit_days: float = 365.0
 
     def expire(self) -> int:
         """Mark inspections as deleted whose time is over; returns how many."""
@@ -143,7 +145,11 @@ class Retention:
             return set(session.scalars(select(Upload.id).where(Upload.removed_at.is_(None))))
 
     def tidy(self) -> None:
-        """Delete what nobody asks for any more: old requests, absent workers, removed uploads, ended reservations."""
+        """Delete what nobody asks for any more.
+
+        These are old requests, absent workers, removed uploads, ended reservations and sessions, counts of former
+        minutes, and entries of the audit log after their time.
+        """
         with self.db.write() as session:
             now = self.db.now(session)
             old, unseen = now - timedelta(days=_IDEMPOTENCY_DAYS), now - timedelta(days=_WORKER_DAYS)
@@ -151,6 +157,9 @@ class Retention:
             session.execute(delete(Worker).where(Worker.seen_at < unseen))
             session.execute(delete(Upload).where(Upload.removed_at < now - timedelta(days=_UPLOAD_DAYS)))
             session.execute(delete(Reservation).where(Reservation.expires_at < now))
+            session.execute(delete(WebSession).where(WebSession.expires_at < now))
+            session.execute(delete(RequestCount).where(RequestCount.minute < now - timedelta(minutes=2)))
+            session.execute(delete(AuditEntry).where(AuditEntry.at < now - timedelta(days=self.audit_days)))
 
 
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))

@@ -67,6 +67,14 @@ class Inspection(Base):
     """As they were asked for; `settings` is what they meant."""
     attempt: Mapped[int] = mapped_column(default=1)
     """Grows with every retry."""
+    priority: Mapped[int] = mapped_column(default=0)
+    """0 to 9; higher ones of an account go first. See `store.turns`."""
+    input_bytes: Mapped[int] = mapped_column(BigInteger, default=0)
+    """Size of the files that it was made from; 0 for those from before it was written down."""
+    published_bytes: Mapped[int] = mapped_column(BigInteger, default=0)
+    """Size of its published files."""
+    reuse_account: Mapped[str] = mapped_column(String(64), default="")
+    """The account whose finished results it may take up, and no other's; empty: those that all share."""
     progress: Mapped[float] = mapped_column(default=0.0)
     """Highest share shown in this attempt."""
     published: Mapped[int] = mapped_column(default=0)

@@ -17,7 +17,7 @@ from api.routes.inspections import represent
 from api.schemas import Parameters, Resource
 from api.services import Services
 from api.state import state_of
-from api.submit import settings_of
+from api.submit import require_priority, settings_of
 from core.fingerprint import canonical_json
 from core.settings import Settings
 from core.states import InspectionState
@@ -90,6 +90,7 @@ def _retry(services: Services, inspection_id: str, owner: str, asked: Retry) -> 
         raise Refused(HTTPStatus.CONFLICT, "active", "the inspection is not over; cancel it first")
     _require_stage(services, asked.from_stage)
     settings, changes = _settings(row, asked.parameters)
+    require_priority(services, owner, changes.get("priority", 0))
     require_space(services)
     # The place is held first: a retry that is refused must not have cost results.
     with services.admission.place(owner) as place:
@@ -121,8 +122,8 @@ def _settings(row: Inspection, parameters: Parameters | None) -> tuple[Settings,
         status = HTTPStatus.UNPROCESSABLE_ENTITY
         raise Refused(status, "bad_parameters", errors[0].detail, where="options", errors=errors) from None
     changes: dict[str, Any] = {"parameters": {"preset": parameters.preset, "options": parameters.options}}
-    given = {"label": parameters.label, "external_id": parameters.external_id}
-    changes.update({name: text for name, text in given.items() if text})
+    given = {"label": parameters.label, "external_id": parameters.external_id, "priority": parameters.priority}
+    changes.update({name: value for name, value in given.items() if value})
     return settings_of(parameters), changes
 
 

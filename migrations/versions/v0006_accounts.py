@@ -1,8 +1,12 @@
-"""Keys belong to accounts: every old key gets one of its own, and what was made without keys belongs to `default`."""
+"""Keys belong to accounts, which have quotas, turns, sessions and an audit log.
+
+Every old key gets an account of its own, and what was made without keys belongs to the account `default`.
+"""
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from typing import Any
 
 import sqlalchemy as sa
 from alembic import op
@@ -47,14 +51,29 @@ def upgrade() -> None:
         table.create_index("ix_api_keys_account_id", ["account_id"])
     for name in _OWNED:
         op.execute(f"UPDATE {name} SET owner = '{_DEFAULT}' WHERE owner = ''")
+    with op.batch_alter_table("inspections") as table:
+        for column in _inspection_columns():
+            table.add_column(column)
+    _sessions()
+    _request_counts()
+    _audit()
+    op.execute(
+        "UPDATE inspections SET published_bytes = "
+        "(SELECT coalesce(sum(size), 0) FROM artifacts WHERE artifacts.inspection_id = inspections.id)"
+    )
 
 
 def downgrade() -> None:
-    """Drop it; what an account has belongs then to one of its keys: its first, or else the oldest that is valid."""
+    """Drop it all; what an account has belongs then to one of its keys: its first, or else the oldest that is valid."""
     for account, owner in _owners().items():
         for name in _OWNED:
             statement = sa.text(f"UPDATE {name} SET owner = :owner WHERE owner = :account")
             op.get_bind().execute(statement.bindparams(owner=owner, account=account))
+    for name in ("audit", "request_counts", "sessions"):
+        op.drop_table(name)
+    with op.batch_alter_table("inspections") as table:
+        for column in _inspection_columns():
+            table.drop_column(column.name)
     with op.batch_alter_table("api_keys") as table:
         table.drop_constraint("fk_api_keys_account_id_accounts", type_="foreignkey")
         table.drop_index("ix_api_keys_account_id")
@@ -71,6 +90,15 @@ def _owners() -> dict[str, str]:
         if not found.get(account) or account == key:
             found[account] = key
     return found
+
+
+def _inspection_columns() -> list[sa.Column[Any]]:
+    return [
+        sa.Column("priority", sa.Integer(), nullable=False, server_default="0"),
+        sa.Column("input_bytes", sa.BigInteger(), nullable=False, server_default="0"),
+        sa.Column("published_bytes", sa.BigInteger(), nullable=False, server_default="0"),
+        sa.Column("reuse_account", sa.String(64), nullable=False, server_default=""),
+    ]
 
 
 def _accounts() -> sa.Table:
@@ -90,3 +118,47 @@ def _accounts() -> sa.Table:
         sa.Column("turn_at", sa.DateTime(), nullable=True),
         sa.PrimaryKeyConstraint("id", name="pk_accounts"),
     )
+
+
+def _sessions() -> None:
+    op.create_table(
+        "sessions",
+        sa.Column("digest", sa.String(64), nullable=False),
+        sa.Column("key_id", sa.String(64), nullable=False),
+        sa.Column("created_at", sa.DateTime(), nullable=False),
+        sa.Column("expires_at", sa.DateTime(), nullable=False),
+        sa.ForeignKeyConstraint(["key_id"], ["api_keys.id"], name="fk_sessions_key_id_api_keys"),
+        sa.PrimaryKeyConstraint("digest", name="pk_sessions"),
+    )
+    op.create_index("ix_sessions_key_id", "sessions", ["key_id"])
+    op.create_index("ix_sessions_expires_at", "sessions", ["expires_at"])
+
+
+def _request_counts() -> None:
+    op.create_table(
+        "request_counts",
+        sa.Column("owner", sa.String(64), nullable=False),
+        sa.Column("minute", sa.DateTime(), nullable=False),
+        sa.Column("taken", sa.Integer(), nullable=False),
+        sa.PrimaryKeyConstraint("owner", "minute", name="pk_request_counts"),
+    )
+
+
+def _audit() -> None:
+    op.create_table(
+        "audit",
+        sa.Column("id", sa.Integer(), nullable=False),
+        sa.Column("at", sa.DateTime(), nullable=False),
+        sa.Column("account_id", sa.String(64), nullable=False),
+        sa.Column("key_id", sa.String(64), nullable=False),
+        sa.Column("action", sa.String(128), nullable=False),
+        sa.Column("target", sa.String(256), nullable=False),
+        sa.Column("status", sa.Integer(), nullable=False),
+        sa.Column("code", sa.String(64), nullable=False),
+        sa.Column("request_id", sa.String(64), nullable=False),
+        sa.Column("times", sa.Integer(), nullable=False),
+        sa.PrimaryKeyConstraint("id", name="pk_audit"),
+        sqlite_autoincrement=True,
+    )
+    op.create_index("ix_audit_account_id_id", "audit", ["account_id", "id"])
+    op.create_index("ix_audit_at", "audit", ["at"])

@@ -13,13 +13,17 @@ from api.middleware import RequestMetrics, RequestMiddleware, known_query
 from api.probing import Prober
 from api.resource import Resources
 from api.routes import (
+    accounts,
     actions,
     artifacts,
+    audit,
     frames,
     health,
     inspections,
+    keys,
     options,
     pages,
+    session,
     stages,
     system,
     tables,
@@ -37,7 +41,10 @@ from store.request_rate import RequestRate
 from store.settings import deployment_settings
 from store.web_sessions import WebSessions
 
-_ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames)
+_ROUTERS = (
+    *(health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames),
+    *(session, keys, accounts, audit),
+)
 
 
 def create_app(services: Services | None = None) -> FastAPI:

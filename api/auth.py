@@ -131,8 +131,6 @@ Reader = Annotated[Caller, Depends(requires(Scope.READ))]
 """Parameter of a route that shows what the caller's account has, or what concerns everybody."""
 Submitter = Annotated[Caller, Depends(requires(Scope.SUBMIT))]
 """Parameter of a route that sends, starts, stops or deletes something of the caller's account."""
-Manager = Annotated[Caller, Depends(requires(Scope.MANAGE))]
-"""Parameter of a route about keys of the caller's account."""
 Administrator = Annotated[Caller, Depends(requires(Scope.ADMIN))]
 """Parameter of a route about all accounts."""
 AnyCaller = Annotated[Caller, Depends(caller)]

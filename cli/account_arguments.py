@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from pathlib import Path
 
 Commands = argparse._SubParsersAction  # argparse has no public name for it
 LIMITS: Mapping[str, tuple[type, str]] = {
@@ -22,7 +23,9 @@ USUAL = "usual"
 
 def add_account_commands(commands: Commands[argparse.ArgumentParser]) -> None:
     """Register accounts and keys."""
-    _accounts(_add(commands, "accounts", "make, change and list accounts in the database of this machine's server"))
+    _accounts(
+        _add(commands, "accounts", "make, change, export and delete accounts in the database of this machine's server")
+    )
     _keys(_add(commands, "keys", "make, rotate, list and revoke API keys in the database of this machine's server"))
 
 
@@ -35,8 +38,17 @@ def _accounts(actions: Commands[argparse.ArgumentParser]) -> None:
         for name, (_, meaning) in LIMITS.items():
             text = f"{meaning}; '{USUAL}' = as for every account"
             action.add_argument(f"--{name.replace('_', '-')}", metavar="N", help=text)
-    for action in (create, change, actions.add_parser("list", help="list all accounts with what is set of them")):
+    audit = actions.add_parser("audit", help="list who asked for which change and what came of it, newest first")
+    audit.add_argument("--account", metavar="ACCOUNT", help="only of this account")
+    audit.add_argument("--limit", type=int, default=100, metavar="N", help="at most so many (100)")
+    for action in (create, change, audit, actions.add_parser("list", help="list all accounts, what is set of them")):
         _json(action)
+    export = actions.add_parser("export", help="write all that an account has into a folder")
+    export.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to make")
+    delete = actions.add_parser("delete", help="delete all that an account has, revoke its keys and close it")
+    delete.add_argument("--yes", action="store_true", help="it is meant")
+    for action in (export, delete):
+        action.add_argument("id", metavar="ACCOUNT", help="its id")
 
 
 def _keys(actions: Commands[argparse.ArgumentParser]) -> None:

@@ -136,7 +136,10 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     _preset(run, default=None)
     _set(run, "set one option (repeatable); `bladeatlas options` lists them")
     run.add_argument(
-        "--parameters", type=Path, metavar="FILE", help="JSON {preset, options {name: value}, label, external_id}"
+        "--parameters",
+        type=Path,
+        metavar="FILE",
+        help="JSON {preset, options {name: value}, label, external_id, priority}",
     )
     run.add_argument(
         "--roi", metavar="full|X0,Y0,X1,Y1", help="region of interest, as shares of the source frame's width and height"

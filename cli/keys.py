@@ -5,38 +5,54 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict
 from datetime import timedelta
-from typing import Any
 
 from cli.terminal import say, say_json
 from core.errors import BadInput
+from store.account_data import plain
 from store.account_models import DEFAULT_ACCOUNT, USUAL_SCOPES
 from store.accounts import Accounts
+from store.audit import audited
 from store.db import Database
 from store.factory import open_database
 from store.keys import Keys, KeyView, parse_scopes, utc_now
 from store.settings import deployment_settings
+
+_MOST_DAYS = 36_500.0
+_MOST_HOURS = 8760.0
 
 
 def command(parsed: argparse.Namespace) -> int:
     """Do what was asked for; a new key is printed once and never again."""
     database = open_database(deployment_settings())
     try:
-        keys = Keys(database)
-        if parsed.action == "create":
-            account = parsed.account or _only_account(database)
-            expires_at = None if parsed.days is None else utc_now() + timedelta(days=parsed.days)
-            scopes = USUAL_SCOPES if parsed.scopes is None else parse_scopes(parsed.scopes.split(","))
-            made = keys.create(parsed.name, account, scopes, expires_at)
-            _show(*made, parsed.json)
-        elif parsed.action == "rotate":
-            _show(*keys.rotate(parsed.name, timedelta(hours=parsed.keep_hours)), parsed.json)
-        elif parsed.action == "revoke":
-            keys.revoke(parsed.name)
+        if parsed.action == "list":
+            _list(Keys(database).all(parsed.account), parsed.json)
         else:
-            _list(keys.all(parsed.account), parsed.json)
+            with audited(database, f"keys {parsed.action}", parsed.name):
+                _change(parsed, database)
     finally:
         database.close()
     return 0
+
+
+def _change(parsed: argparse.Namespace, database: Database) -> None:
+    keys = Keys(database)
+    if parsed.action == "create":
+        account = parsed.account or _only_account(database)
+        scopes = USUAL_SCOPES if parsed.scopes is None else parse_scopes(parsed.scopes.split(","))
+        days = None if parsed.days is None else timedelta(days=_within(parsed.days, _MOST_DAYS, "--days"))
+        _show(*keys.create(parsed.name, account, scopes, None if days is None else utc_now() + days), parsed.json)
+    elif parsed.action == "rotate":
+        keep = timedelta(hours=_within(parsed.keep_hours, _MOST_HOURS, "--keep-hours"))
+        _show(*keys.rotate(parsed.name, keep), parsed.json)
+    else:
+        keys.revoke(parsed.name)
+
+
+def _within(number: float, most: float, where: str) -> float:
+    if not 0 <= number <= most:
+        raise BadInput(f"{number:g} is not between 0 and {most:g}", where=where)
+    return number
 
 
 def _only_account(database: Database) -> str:
@@ -50,7 +66,7 @@ def _only_account(database: Database) -> str:
 
 def _show(view: KeyView, key: str, as_json: bool) -> None:
     if as_json:
-        say_json({**_record(view), "key": key})
+        say_json({**plain(asdict(view)), "key": key})
         return
     say(key)
     say(f"key {view.id} of the account '{view.account_id}' ({', '.join(view.scopes)})", error=True)
@@ -63,10 +79,6 @@ def _list(found: list[KeyView], as_json: bool) -> None:
         state = ended.split()[-1] if ended else "valid"
         used = view.last_used_at.isoformat(timespec="seconds") if view.last_used_at else "never"
         if as_json:
-            say_json(_record(view))
+            say_json(plain(asdict(view)))
         else:
             say(f"{view.id}  {view.account_id}  {state}  {','.join(view.scopes)}  last used {used}  {view.name}")
-
-
-def _record(view: KeyView) -> dict[str, Any]:
-    return {name: value.isoformat() if hasattr(value, "isoformat") else value for name, value in asdict(view).items()}

@@ -41,10 +41,14 @@ def _submit(submit: argparse.ArgumentParser) -> None:
         "--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help="set one option"
     )
     submit.add_argument(
-        "--parameters", type=Path, metavar="FILE", help="JSON {preset, options {name: value}, label, external_id}"
+        "--parameters",
+        type=Path,
+        metavar="FILE",
+        help="JSON {preset, options {name: value}, label, external_id, priority}",
     )
     submit.add_argument("--label", default="", metavar="TEXT", help="free text")
     submit.add_argument("--external-id", default="", metavar="TEXT", help="your own name for it")
+    submit.add_argument("--priority", type=int, metavar="N", help="0 to 9; higher ones of your account go first (0)")
     submit.add_argument("--wait", action="store_true", help="show it until it is over")
 
 

@@ -24,7 +24,7 @@ class Scope(StrEnum):
     REVIEW = "review"
     """Write review records."""
     MANAGE = "manage"
-    """Make, rotate and revoke keys of the account."""
+    """Make, rotate and revoke keys of the account, and delete all that it has."""
     ADMIN = "admin"
     """See and change all accounts and their keys, and read the audit log."""
 

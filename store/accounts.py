@@ -20,16 +20,16 @@ HIGHEST_PRIORITY = 9
 LIMITS = ("max_active", "max_open_uploads", "max_promised_bytes", "max_kept_bytes", "max_requests_per_minute")
 """Limits that hold in all and for one account."""
 _ID = re.compile(r"[a-z0-9][a-z0-9-]{0,63}")
-_LEAST: Mapping[str, int] = {
-    "retention_days": 0,
-    "max_priority": 0,
-    "max_active": 1,
-    "max_open_uploads": 1,
-    "max_promised_bytes": 0,
-    "max_kept_bytes": 0,
-    "max_requests_per_minute": 0,
+_RANGES: Mapping[str, tuple[int, int]] = {
+    "retention_days": (0, 36_525),
+    "max_priority": (0, HIGHEST_PRIORITY),
+    "max_active": (1, 1 << 30),
+    "max_open_uploads": (1, 1 << 30),
+    "max_promised_bytes": (0, 1 << 60),
+    "max_kept_bytes": (0, 1 << 60),
+    "max_requests_per_minute": (0, 1 << 30),
 }
-"""Smallest value of everything that can be set of an account; what 0 means is what it means in `store.settings`."""
+"""Least and most of everything that can be set of an account; what 0 means is what it means in `store.settings`."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def owner_limit(session: Session, settings: DeploymentSettings, owner: str, name
 
 
 def _found(session: Session, account_id: str) -> Account:
-    row = session.get(Account, account_id)
+    row = session.get(Account, account_id) if _ID.fullmatch(account_id) else None
     if row is None:
         raise BadInput(f"there is no account '{account_id}'", code="unknown_account", where="account")
     return row
@@ -141,10 +141,9 @@ def _found(session: Session, account_id: str) -> Account:
 
 def _require_limits(limits: Mapping[str, float | None]) -> None:
     for name, value in limits.items():
-        if value is not None and value < _LEAST[name]:
-            raise BadInput(f"{name} is {value:g}; at least {_LEAST[name]}", where=name)
-    if (limits.get("max_priority") or 0) > HIGHEST_PRIORITY:
-        raise BadInput(f"max_priority is {limits['max_priority']}; at most {HIGHEST_PRIORITY}", where="max_priority")
+        least, most = _RANGES[name]
+        if value is not None and not least <= value <= most:
+            raise BadInput(f"{name} is {value:g}; it may be {least} to {most}", where=name)
 
 
 def _set(row: Account, limits: Mapping[str, float | None]) -> None:

@@ -1,8 +1,9 @@
 """Admission: limits on active inspections, open uploads, promised and kept bytes; requests that have one effect.
 
-Each limit holds in all and for one account, whose own value wins over that of the deployment. It is asked for and used
-up in one transaction, and such transactions follow one another, in one process or in many. What a request needs before
-it has a row of its own it holds as a reservation, which ends with the request, or by its time when the process was killed.
+Each limit holds in all and for one account, whose own value wins over that of the deployment. It is asked for and
+used up in one transaction, and such transactions follow one another, in one process or in many. What a request needs
+before it has a row of its own it holds as a reservation, which ends with the request, or by its time when the process
+was killed.
 
 An idempotency key is written in the transaction that creates the inspection, so a crash leaves either both or
 neither, and of two equal requests at once the database lets one through; the other finds what it made.
@@ -105,7 +106,7 @@ class Admission:
         """
         promised, own = _promised(session, owner, now)
         self._require_sum(session, owner, "max_promised_bytes", "promised", (promised, own), size)
-        self._require_kept(session, owner, size, (promised, own), now)
+        self._require_kept(session, owner, size, now)
         free = shutil.disk_usage(self.settings.folder("")).free
         if free - promised - size < self.settings.reserve_bytes:
             message = (
@@ -121,12 +122,12 @@ class Admission:
     def _require_place(self, session: Session, owner: str, input_bytes: int, now: datetime) -> None:
         """`LimitReached` unless one more inspection may be active and so many bytes may be kept for it."""
         self._require(session, owner, ReservationKind.INSPECTION, now)
-        self._require_kept(session, owner, input_bytes, (0, 0), now)
+        self._require_kept(session, owner, input_bytes, now)
 
-    def _require_kept(self, session: Session, owner: str, size: int, promised: tuple[int, int], now: datetime) -> None:
+    def _require_kept(self, session: Session, owner: str, size: int, now: datetime) -> None:
         """`LimitReached` when `size` more bytes, with those that are promised, are more than may be kept."""
         if any(self._allowed(session, owner, "max_kept_bytes")):  # else nobody need add up what is kept
-            kept = _kept(session, owner, now)
+            kept, promised = _kept(session, owner, now), _promised(session, owner, now)
             used = (kept[0] + promised[0], kept[1] + promised[1])
             self._require_sum(session, owner, "max_kept_bytes", "kept", used, size)
 

@@ -28,6 +28,7 @@ from store.db import Database
 from store.leasing import changed
 
 _FORM = re.compile(r"ba_([0-9a-f]{32})_[A-Za-z0-9_-]{43}")
+_LONGEST = timedelta(days=36_525)
 _NOTE_USE_EVERY = timedelta(minutes=1)
 
 
@@ -78,7 +79,7 @@ class Keys:
         """A new key of an account and its only showing.
 
         Raises:
-            BadInput: there is no such account, it was closed, or the key would have expired already.
+            BadInput: there is no such account, it was closed, or the end of the key does not lie ahead.
         """
         with self.db.write() as session:
             return self._create_in(session, name, account_id, scopes, expires_at)
@@ -88,8 +89,8 @@ class Keys:
     ) -> tuple[KeyView, str]:
         open_account(session, account_id)
         now = self.db.now(session)
-        if expires_at is not None and expires_at <= now:
-            raise BadInput("the key would have expired already", where="expires_at")
+        if expires_at is not None and not now < expires_at <= now + _LONGEST:
+            raise BadInput("the end of a key must lie ahead, within 100 years", where="expires_at")
         key_id = uuid.uuid4().hex
         key = f"ba_{key_id}_{secrets.token_urlsafe(32)}"
         row = ApiKey(id=key_id, account_id=account_id, name=name, digest=_digest(key), created_at=now)
@@ -189,6 +190,10 @@ class KeyRing:
                 self._ever_made = self.keys.ever_made()
                 self._known = self.keys.known()
                 self._read_at = self.clock()
+
+    def outdate(self) -> None:
+        """Keys were changed by this process: the next request sees it."""
+        self._read_at = None
 
     @property
     def ever_made(self) -> bool:

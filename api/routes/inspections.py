@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from datetime import UTC, datetime
+from datetime import datetime
 from http import HTTPStatus
 from typing import Annotated
 
@@ -16,7 +16,7 @@ from api.auth import Caller, Reader, Submitter
 from api.finding import find_inspection, gone, is_id
 from api.negotiation import matches
 from api.paging import next_link
-from api.parameters import Text
+from api.parameters import Text, moment
 from api.problems import Refused, not_found, responses
 from api.state import State, state_of
 from api.submit import CREATE_BODY, Asked, accept, asked_by_form, asked_by_json
@@ -169,8 +169,8 @@ def listing(
         states=tuple(state or ()),
         label=label,
         external_id=external_id,
-        created_after=_moment(created_after, "created_after"),
-        created_before=_moment(created_before, "created_before"),
+        created_after=moment(created_after, "created_after"),
+        created_before=moment(created_before, "created_before"),
     )
     services = here.services
     page = list_inspections(services.db, chosen, limit, cursor)
@@ -180,16 +180,6 @@ def listing(
     return schemas.Inspections(
         inspections=[here.resources.resource(status) for status in shown], next_cursor=page.cursor
     )
-
-
-def _moment(value: datetime | None, name: str) -> datetime | None:
-    if value is None:
-        return None
-    try:
-        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
-    except OverflowError:
-        detail = "this moment is outside the calendar"
-        raise Refused(HTTPStatus.UNPROCESSABLE_ENTITY, "bad_request", detail, where=name) from None
 
 
 @router.delete(

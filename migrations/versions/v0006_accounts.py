@@ -77,8 +77,8 @@ def downgrade() -> None:
     with op.batch_alter_table("api_keys") as table:
         table.drop_constraint("fk_api_keys_account_id_accounts", type_="foreignkey")
         table.drop_index("ix_api_keys_account_id")
-        for column in ("account_id", "scopes", "expires_at"):
-            table.drop_column(column)
+        for name in ("account_id", "scopes", "expires_at"):
+            table.drop_column(name)
     op.drop_table("accounts")
 
 

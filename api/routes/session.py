@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime
 from http import HTTPStatus
+from typing import Any
 
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -17,7 +18,7 @@ from store.web_sessions import SESSION_LENGTH
 
 router = APIRouter(prefix="/v1/session", tags=["accounts"])
 
-_EXAMPLE = {"account": "default", "scopes": ["read", "submit"], "expires_at": "2026-05-04T21:30:02Z"}
+_EXAMPLE: dict[str, Any] = {"account": "default", "scopes": ["read", "submit"], "expires_at": "2026-05-04T21:30:02Z"}
 
 
 class Session(BaseModel):

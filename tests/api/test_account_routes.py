@@ -11,6 +11,7 @@ from fastapi.testclient import TestClient
 
 from store.account_models import Scope
 from store.accounts import Accounts
+from store.models import Inspection
 from tests.api.callers import Headers, Place, key_id
 from tests.api.conftest import TUS, Backend
 
@@ -71,6 +72,25 @@ def test_an_account_is_deleted_with_all_that_it_has(place: Place) -> None:
     admin = place.key(Scope.ADMIN, account="default")
     again = place.client.post("/v1/keys", headers=admin, json={"name": "x", "account": "mine"})
     assert again.status_code == 409
+
+
+@pytest.mark.usefixtures("unprobed")
+def test_the_files_that_came_are_kept_bytes_of_the_account(place: Place) -> None:
+    Accounts(place.backend.db).change("mine", max_kept_bytes=3000)
+    key, video = place.key(Scope.SUBMIT), {"video": ("v.mp4", bytes(2000))}
+    made = place.client.post("/v1/inspections", headers=key, files=video)
+    assert made.status_code == 202, made.text
+    refused = place.client.post("/v1/inspections", headers=key, files=video)
+    problem = refused.json()
+    assert (refused.status_code, problem["code"]) == (429, "too_many_kept_bytes_of_owner")
+    assert problem["where"] == "max_kept_bytes_per_owner"
+    assert refused.headers["Retry-After"]
+    with place.backend.db.read() as session:
+        row = session.get_one(Inspection, made.json()["id"])
+    assert (row.owner, row.input_bytes, row.reuse_account) == ("mine", 2000, "mine")
+    other = place.client.post("/v1/inspections", headers=place.key(Scope.SUBMIT, account="default"), files=video)
+    with place.backend.db.read() as session:
+        assert session.get_one(Inspection, other.json()["id"]).reuse_account == "", "default shares"
 
 
 def test_requests_beyond_the_rate_are_told_when_to_come_back(place: Place) -> None:

@@ -8,17 +8,22 @@ from fastapi import Depends, FastAPI
 from prometheus_client import CollectorRegistry
 
 from api import openapi, problems
+from api.auditing import Auditor
 from api.middleware import RequestMetrics, RequestMiddleware, known_query
 from api.probing import Prober
 from api.resource import Resources
 from api.routes import (
+    accounts,
     actions,
     artifacts,
+    audit,
     frames,
     health,
     inspections,
+    keys,
     options,
     pages,
+    session,
     stages,
     system,
     tables,
@@ -30,10 +35,16 @@ from api.trust import TrustMiddleware
 from api.watching import Watcher
 from core.errors import BadInput
 from core.versions import program_version
+from store.audit import AuditLog
 from store.keys import KeyRing, Keys
+from store.request_rate import RequestRate
 from store.settings import deployment_settings
+from store.web_sessions import WebSessions
 
-_ROUTERS = (health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames)
+_ROUTERS = (
+    *(health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames),
+    *(session, keys, accounts, audit),
+)
 
 
 def create_app(services: Services | None = None) -> FastAPI:
@@ -62,7 +73,9 @@ def create_app(services: Services | None = None) -> FastAPI:
     openapi.install(app)
     # The last one added is the first that sees a request: refusals are named and counted too.
     app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=state.services.settings.host_names())
-    app.add_middleware(RequestMiddleware, metrics=RequestMetrics(state.registry))
+    app.add_middleware(
+        RequestMiddleware, metrics=RequestMetrics(state.registry), auditor=Auditor(AuditLog(state.services.db))
+    )
     for module in _ROUTERS:
         app.include_router(module.router)
     return app
@@ -87,4 +100,6 @@ def _state(services: Services) -> State:
         watcher=Watcher(resources.snapshot),
         prober=Prober(services.settings),
         registry=registry,
+        rate=RequestRate(services.db, services.settings),
+        sessions=WebSessions(services.db),
     )

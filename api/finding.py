@@ -1,4 +1,4 @@
-"""Finding what a path names: 404 for what is not there or belongs to another key, 410 for what was deleted."""
+"""Finding what a path names: 404 for what is not there or belongs to another account, 410 for what was deleted."""
 
 from __future__ import annotations
 

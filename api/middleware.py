@@ -15,6 +15,7 @@ from prometheus_client import CollectorRegistry, Counter, Histogram
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from api.auditing import Auditor
 from api.auth import BEARER, caller
 from api.problems import FieldError, Refused, pointer
 from core.names import unknown_name
@@ -29,6 +30,7 @@ _POLICY = (
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 """For pages that are files of a result, such as the gallery: they show their own pictures and reach nothing else."""
+_INTERNAL = int(HTTPStatus.INTERNAL_SERVER_ERROR)
 _SHOWN = 64
 """Characters of an unknown name that are repeated in the answer."""
 
@@ -58,23 +60,27 @@ class RequestMetrics:
 class RequestMiddleware:
     """Pure ASGI: streams pass through untouched."""
 
-    def __init__(self, app: ASGIApp, metrics: RequestMetrics) -> None:
+    def __init__(self, app: ASGIApp, metrics: RequestMetrics, auditor: Auditor) -> None:
         self._app = app
         self._metrics = metrics
+        self._auditor = auditor
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Name the request, answer it, count it."""
+        """Name the request, answer it, count it; what would change something is written down before its answer."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
         name = _request_id(scope)
         scope.setdefault("state", {})["request_id"] = name
-        started, status = time.monotonic(), 500
+        started, status = time.monotonic(), 0
+        audited = self._auditor.concerns(scope)
 
         async def named(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
+                if audited:
+                    await self._auditor.note(scope, status)
                 headers = MutableHeaders(scope=message)
                 headers["X-Request-Id"] = name
                 headers.setdefault("X-Content-Type-Options", "nosniff")
@@ -85,8 +91,12 @@ class RequestMiddleware:
 
         try:
             await self._app(scope, receive, named)
+        except Exception:
+            if audited and not status:  # answered above this, as an internal error
+                await self._auditor.note(scope, _INTERNAL)
+            raise
         finally:
-            self._metrics.note(scope, status, time.monotonic() - started)
+            self._metrics.note(scope, status or _INTERNAL, time.monotonic() - started)
 
 
 def _request_id(scope: Scope) -> str:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from enum import StrEnum
+from http import HTTPStatus
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
+
+from api.problems import Refused
 
 Seconds = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
 """A time in the video."""
@@ -24,6 +28,17 @@ def _without_nul(text: str) -> str:
 
 Text = Annotated[str, Field(max_length=256), AfterValidator(_without_nul)]
 """A text to compare with a column."""
+
+
+def moment(value: datetime | None, name: str) -> datetime | None:
+    """A moment of the parameter `name` in UTC, which is meant when it has no zone; 422 outside the calendar."""
+    if value is None:
+        return None
+    try:
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+    except OverflowError:
+        detail = "this moment is outside the calendar"
+        raise Refused(HTTPStatus.UNPROCESSABLE_ENTITY, "bad_request", detail, where=name) from None
 
 
 @dataclass(frozen=True)

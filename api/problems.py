@@ -31,6 +31,8 @@ _STATUS: tuple[tuple[type[BladeAtlasError], HTTPStatus], ...] = (
 )
 _BY_CODE = {
     "conflict": HTTPStatus.CONFLICT,
+    "unknown_account": HTTPStatus.NOT_FOUND,
+    "unknown_key": HTTPStatus.NOT_FOUND,
     "table_changed": HTTPStatus.CONFLICT,
     "bad_cursor": HTTPStatus.BAD_REQUEST,
 }
@@ -111,7 +113,7 @@ class Refused(Exception):
 
 
 def not_found(what: str) -> Refused:
-    """404: there is no such thing, or it belongs to another key."""
+    """404: there is no such thing, or it belongs to another account."""
     return Refused(HTTPStatus.NOT_FOUND, "not_found", f"there is no such {what}")
 
 
@@ -132,8 +134,14 @@ def answer(request: Request, error: Refused | SQLAlchemyError) -> JSONResponse:
 
 
 def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI's entries for the problems that a route may answer with."""
-    return {status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in statuses}
+    """OpenAPI's entries for the problems that a route may answer with.
+
+    Who has to say who asks (401) may also be somebody who may not do this (403), or asks too often (429).
+    """
+    also = {403, 429} if 401 in statuses else set()
+    return {
+        status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in sorted(also.union(statuses))
+    }
 
 
 def status_of(error: BladeAtlasError) -> HTTPStatus:
@@ -156,7 +164,10 @@ def pointer(parts: Sequence[Any]) -> str:
 def _expected(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, BladeAtlasError)  # registered for this class only
     status = status_of(error)
-    return _respond(request, Refused(status, error.code, error.message, where=error.where, headers=_later(status)))
+    headers = _later(status)
+    if isinstance(error, LimitReached) and error.retry_after_s is not None:
+        headers["Retry-After"] = str(error.retry_after_s)
+    return _respond(request, Refused(status, error.code, error.message, where=error.where, headers=headers))
 
 
 def _refused(request: Request, error: Exception) -> JSONResponse:
@@ -225,6 +236,7 @@ def _respond(request: Request, refused: Refused) -> JSONResponse:
         retryable=refused.retryable,
         errors=refused.errors,
     )
+    request.state.problem_code = problem.code  # for the audit log
     # "ignore": a path or a value may hold what is no character, and an error must still be told.
     body = problem.model_dump_json().encode("utf-8", "ignore")
     headers = {"X-Request-Id": problem.request_id, **refused.headers}

@@ -96,6 +96,7 @@ class Resources:
                 "cancellable": row.state in LEASABLE,
                 "label": row.label,
                 "external_id": row.external_id,
+                "priority": row.priority,
                 "parameters": row.parameters or {},
                 "created_at": row.created_at,
                 "started_at": row.started_at,

@@ -43,6 +43,7 @@ EXAMPLE: dict[str, Any] = {
     "cancellable": True,
     "label": "engine 4, stage 2",
     "external_id": "WO-1187",
+    "priority": 0,
     "parameters": {"preset": "draft", "options": {"matching.window": 8}},
     "created_at": "2026-05-04T09:30:02Z",
     "started_at": "2026-05-04T09:30:03Z",
@@ -135,6 +136,7 @@ class Resource(BaseModel):
     cancellable: bool
     label: str
     external_id: str
+    priority: int = Field(description="0 to 9; of the inspections of an account higher ones go first")
     parameters: dict[str, Any] = Field(description="as they were asked for")
     created_at: datetime
     started_at: datetime | None
@@ -170,3 +172,6 @@ class Parameters(BaseModel):
     options: dict[str, Any] = Field({}, description="values by dotted name; `GET /v1/options` lists them")
     label: Text = Field("", description="free text")
     external_id: Text = Field("", description="the caller's own name for it; need not be unique")
+    priority: int = Field(
+        0, ge=0, le=9, description="higher ones of the account go first; at most the account's `max_priority`"
+    )

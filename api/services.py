@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from store.account_models import DEFAULT_ACCOUNT
 from store.admission import Admission
 from store.db import Database
 from store.factory import open_artifacts, open_database
@@ -50,6 +51,11 @@ class Services:
     def admission(self) -> Admission:
         """Limits on what may begin."""
         return Admission(self.db, self.settings)
+
+    def reuse_account(self, owner: str) -> str:
+        """The account whose results alone a new inspection of `owner` may take up; empty: those that all share."""
+        shares = self.settings.share_results or owner == DEFAULT_ACCOUNT
+        return "" if shares else owner
 
     @property
     def logs(self) -> InspectionLogs:

@@ -12,7 +12,9 @@ from api.resource import Resources
 from api.services import Services
 from api.watching import Watcher
 from store.keys import KeyRing
+from store.request_rate import RequestRate
 from store.uploads import Digests
+from store.web_sessions import WebSessions
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,8 @@ class State:
     watcher: Watcher
     prober: Prober
     registry: CollectorRegistry
+    rate: RequestRate
+    sessions: WebSessions
     digests: Digests = field(default_factory=Digests)
     in_flight: set[tuple[str, str]] = field(default_factory=set)
     """(owner, Idempotency-Key) of requests that are being answered."""

@@ -30,6 +30,7 @@ from core.errors import BadInput
 from core.fingerprint import digest_of
 from core.settings import Settings, make_settings
 from core.videos import Recording
+from store.accounts import Accounts
 from store.admission import IdempotencyKeys, Place
 from store.records import InputFiles
 
@@ -71,16 +72,20 @@ class Asked:
 
     def digest(self) -> str:
         """Name of the request by content, however it was sent."""
+        parameters = self.parameters.model_dump(mode="json")
+        if not self.parameters.priority:  # the name that the same request had before there were priorities
+            del parameters["priority"]
         names = self.sent[0].names() if len(self.sent) == 1 else {"videos": [one.names() for one in self.sent]}
-        return digest_of({**names, "parameters": self.parameters.model_dump(mode="json")})
+        return digest_of({**names, "parameters": parameters})
 
 
 async def accept(state: State, asked: Asked, request: Request) -> str:
     """Make the inspection that was asked for, or find the one that the same request made before; its id.
 
     Raises:
-        Refused: 409 while the same request is under way, 422 for parameters, 429 or 503 when too many wait.
-        LimitReached: too many are active.
+        Refused: 409 while the same request is under way, 422 for parameters or a priority, 429 or 503 when too many
+            wait.
+        LimitReached: too many are active, or too many bytes are kept.
         BadInput: the input cannot be used, or the key was used with another body.
         DiskFull: the disk has reached its reserve.
     """
@@ -91,6 +96,7 @@ async def accept(state: State, asked: Asked, request: Request) -> str:
             return known
         await run_in_threadpool(state.services.admission.look, asked.owner)
         require_space(state.services)
+        await run_in_threadpool(require_priority, state.services, asked.owner, asked.parameters.priority)
         recordings = [one.recording for one in asked.sent]
         await while_there(request, state.prober.check(asked.owner, recordings, settings))
         return await on_disk(partial(_create, state.services, asked, settings))
@@ -105,6 +111,18 @@ def settings_of(parameters: Parameters) -> Settings:
         errors = [FieldError(pointer=pointer(("parameters", *parts)), detail=error.message)]
         status = HTTPStatus.UNPROCESSABLE_ENTITY
         raise Refused(status, "bad_parameters", error.message, where=error.where, errors=errors) from None
+
+
+def require_priority(services: Services, owner: str, priority: int) -> None:
+    """422 for a priority above the highest of the account."""
+    if not priority:
+        return
+    highest = Accounts(services.db).get(owner).max_priority
+    if priority > highest:
+        detail = f"priority {priority} is above {highest}, the highest of this account"
+        errors = [FieldError(pointer="/parameters/priority", detail=detail)]
+        status = HTTPStatus.UNPROCESSABLE_ENTITY
+        raise Refused(status, "bad_parameters", detail, where="priority", errors=errors)
 
 
 def parse_parameters(data: bytes) -> Parameters:
@@ -171,7 +189,9 @@ def _known(services: Services, asked: Asked) -> str | None:
 
 
 def _create(services: Services, asked: Asked, settings: Settings) -> str:
-    with services.admission.place(asked.owner) as place:
+    files = [file for one in asked.sent for file in (one.video, one.annotations) if file is not None]
+    size = sum(file.path.stat().st_size for file in files)
+    with services.admission.place(asked.owner, size) as place:
         return _create_in(services, asked, settings, place)
 
 
@@ -191,6 +211,9 @@ def _create_in(services: Services, asked: Asked, settings: Settings, place: Plac
                 settings,
                 "",
                 owner=asked.owner,
+                priority=asked.parameters.priority,
+                input_bytes=place.input_bytes,
+                reuse_account=services.reuse_account(asked.owner),
                 label=asked.parameters.label,
                 external_id=asked.parameters.external_id,
                 parameters={"preset": asked.parameters.preset, "options": asked.parameters.options},

@@ -76,7 +76,7 @@ class TrustMiddleware:
 
     async def _require_trust(self, request: Request) -> None:
         host = _host_of(request)
-        local, own = host is not None and host.is_loopback, _is_own_site(request, host)
+        local, own = host is not None and host.is_loopback, is_own_site(request)
         if local and own:
             return  # fine with and without keys, so the database need not be asked
         if not self._keys.fresh:
@@ -100,8 +100,9 @@ def _host_of(request: Request) -> HostName | None:
     return HostName.parse(given[0]) if len(given) == 1 else None
 
 
-def _is_own_site(request: Request, host: HostName | None) -> bool:
+def is_own_site(request: Request) -> bool:
     """True unless the browser says that a page of another site, or of another port, asks."""
+    host = _host_of(request)
     if any(site not in _OWN_SITE for site in request.headers.getlist("sec-fetch-site")):
         return False
     return all(_is_own_origin(origin, host) for origin in request.headers.getlist("origin"))

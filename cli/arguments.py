@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from cli.account_arguments import add_account_commands
 from cli.annotation_file import add_format
 from cli.recordings import add_recordings
 from cli.remote_arguments import add_remote_commands
@@ -88,6 +89,7 @@ def parser() -> argparse.ArgumentParser:
     _json(options)
     _json(_add(commands, "version", "print the versions of this program and of the engines it uses"))
     add_remote_commands(commands, _EXIT_CODES)
+    add_account_commands(commands)
     return top
 
 
@@ -137,7 +139,10 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     _preset(run, default=None)
     _set(run, "set one option (repeatable); `bladeatlas options` lists them")
     run.add_argument(
-        "--parameters", type=Path, metavar="FILE", help="JSON {preset, options {name: value}, label, external_id}"
+        "--parameters",
+        type=Path,
+        metavar="FILE",
+        help="JSON {preset, options {name: value}, label, external_id, priority}",
     )
     run.add_argument(
         "--roi", metavar="full|X0,Y0,X1,Y1", help="region of interest, as shares of the source frame's width and height"

@@ -12,18 +12,21 @@ from cli.annotation_file import with_format
 from core.errors import BadInput
 from core.settings import Settings, make_settings
 
-_KEYS = ("preset", "options", "label", "external_id")
+_KEYS = ("preset", "options", "label", "external_id", "priority")
+_HIGHEST_PRIORITY = 9
 _MAX_PARAMETER_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
 class Parameters:
-    """What a run was asked for: a preset, options over it, and two free texts of the user."""
+    """What a run was asked for: a preset, options over it, and what a server also wants to know."""
 
     preset: str = "default"
     options: dict[str, Any] = field(default_factory=dict)
     label: str = ""
     external_id: str = ""
+    priority: int = 0
+    """0 to 9; only a server has others to put it before."""
 
     def settings(self) -> Settings:
         """The run's settings; `BadInput` names what does not fit."""
@@ -43,11 +46,11 @@ def from_arguments(parsed: argparse.Namespace) -> Parameters:
     if parsed.seed is not None:
         options["seed"] = parsed.seed
     options.update(parse_assignment(text) for text in with_format(parsed))
-    return Parameters(parsed.preset or base.preset, options, base.label, base.external_id)
+    return Parameters(parsed.preset or base.preset, options, base.label, base.external_id, base.priority)
 
 
 def read_parameters(path: Path) -> Parameters:
-    """Read ``{preset, options {dotted: value}, label, external_id}``, all optional; unknown keys are refused."""
+    """Read ``{preset, options {dotted: value}, label, external_id, priority}``, all optional; others are refused."""
     where = str(path)
     try:
         if path.stat().st_size > _MAX_PARAMETER_BYTES:
@@ -70,7 +73,14 @@ def read_parameters(path: Path) -> Parameters:
     for key, value in texts.items():
         if not isinstance(value, str):
             raise BadInput(f"'{key}' must be a text", where=where)
-    return Parameters(options=options, **texts)
+    return Parameters(options=options, priority=parse_priority(data.get("priority", 0), where), **texts)
+
+
+def parse_priority(value: Any, where: str) -> int:
+    """A whole number from 0 to 9; `BadInput` for anything else."""
+    if type(value) is not int or not 0 <= value <= _HIGHEST_PRIORITY:
+        raise BadInput(f"'priority' must be a whole number from 0 to {_HIGHEST_PRIORITY}", where=where)
+    return value
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:

@@ -18,7 +18,7 @@ from cli.annotation_file import with_format
 from cli.client import Client, InspectionInfo
 from cli.client.client import chosen
 from cli.client.transfers import no_progress
-from cli.parameters import Parameters, parse_assignment, read_parameters
+from cli.parameters import Parameters, parse_assignment, parse_priority, read_parameters
 from cli.progress import duration
 from cli.recordings import recordings_of
 from cli.terminal import console, say, say_json, visible
@@ -57,8 +57,13 @@ def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
     """Parameter file first, then what the command line says over it; checked here before anything is sent."""
     base = read_parameters(parsed.parameters) if parsed.parameters else Parameters()
     options = {**base.options, **dict(parse_assignment(text) for text in with_format(parsed))}
+    priority = base.priority if parsed.priority is None else parse_priority(parsed.priority, "--priority")
     wanted = Parameters(
-        parsed.preset or base.preset, options, parsed.label or base.label, parsed.external_id or base.external_id
+        parsed.preset or base.preset,
+        options,
+        parsed.label or base.label,
+        parsed.external_id or base.external_id,
+        priority,
     )
     wanted.settings()
     return {
@@ -66,6 +71,7 @@ def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
         "options": wanted.options,
         "label": wanted.label,
         "external_id": wanted.external_id,
+        "priority": wanted.priority,
     }
 
 

@@ -14,7 +14,7 @@ _KEY = "API key: from --key-file, or the variable of --key-env (BLADEATLAS_API_K
 
 
 def add_remote_commands(commands: Commands[argparse.ArgumentParser], exit_codes: str) -> None:
-    """Register submit, status, watch, download, cancel and keys."""
+    """Register submit, status, watch, download and cancel."""
     _submit(_add(commands, "submit", "send videos and annotations to a server and start an inspection", exit_codes))
     status = _add(commands, "status", "say how an inspection stands, or list the latest")
     status.add_argument("id", nargs="?", metavar="ID")
@@ -29,7 +29,6 @@ def add_remote_commands(commands: Commands[argparse.ArgumentParser], exit_codes:
         "--include", action="append", default=[], metavar="GLOB", help="only paths of this pattern (repeatable)"
     )
     _add(commands, "cancel", "stop an inspection").add_argument("id", metavar="ID")
-    _keys(commands)
 
 
 def _submit(submit: argparse.ArgumentParser) -> None:
@@ -40,24 +39,15 @@ def _submit(submit: argparse.ArgumentParser) -> None:
         "--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help="set one option"
     )
     submit.add_argument(
-        "--parameters", type=Path, metavar="FILE", help="JSON {preset, options {name: value}, label, external_id}"
+        "--parameters",
+        type=Path,
+        metavar="FILE",
+        help="JSON {preset, options {name: value}, label, external_id, priority}",
     )
     submit.add_argument("--label", default="", metavar="TEXT", help="free text")
     submit.add_argument("--external-id", default="", metavar="TEXT", help="your own name for it")
+    submit.add_argument("--priority", type=int, metavar="N", help="0 to 9; higher ones of your account go first (0)")
     submit.add_argument("--wait", action="store_true", help="show it until it is over")
-
-
-def _keys(commands: Commands[argparse.ArgumentParser]) -> None:
-    text = "make, list and revoke API keys in the database of this machine's server"
-    keys = commands.add_parser("keys", help=text, description=text[0].upper() + text[1:] + ".")
-    keys.set_defaults(module="cli.keys", function="command")
-    actions = keys.add_subparsers(required=True, dest="action", metavar="ACTION")
-    create = actions.add_parser("create", help="make a key and print it: it is shown once")
-    create.add_argument("name", metavar="NAME", help="who it is for")
-    revoke = actions.add_parser("revoke", help="end a key")
-    revoke.add_argument("name", metavar="ID")
-    for action in (create, revoke, actions.add_parser("list", help="list all keys")):
-        action.add_argument("--json", action="store_true", help="print JSON")
 
 
 def _add(

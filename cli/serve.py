@@ -97,8 +97,10 @@ def _refuse_strangers(database: Database, host: str) -> None:
         if host != "localhost" and not is_loopback_address(host):
             message = f"no API key was ever made, so the server binds only to this machine, not to '{host}'"
             raise BadInput(message, code="no_keys", where="--host")
-    elif not keys.valid():
-        _log.warning("no_valid_key", meaning="every key is revoked: all requests are refused until one is made")
+    elif not keys.any_valid():
+        _log.warning(
+            "no_valid_key", meaning="every key was revoked or has expired: all requests are refused until one is made"
+        )
 
 
 def _background(

@@ -15,6 +15,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.errors import error_from_dict
+from core.fingerprint import digest_of
 from core.graph import TaskSpec
 from core.settings import Settings
 from core.stage import Facts
@@ -116,7 +117,8 @@ def _settle(
         task.state, task.ended_at = TaskState.SKIPPED, now
         return False
     digests = {dep.key: dep.digest for dep in depends if dep.state == TaskState.SUCCEEDED and dep.digest is not None}
-    task.fingerprint = graph.fingerprint(spec, settings, digests, input_files(inspection))
+    named = graph.fingerprint(spec, settings, digests, input_files(inspection))
+    task.fingerprint = _among(inspection.reuse_account, named)
     # Held until the commit: who cleans up waits, and then sees that this task uses it.
     result = session.get(Result, task.fingerprint, with_for_update={"read": True})
     if result is None:
@@ -125,6 +127,11 @@ def _settle(
     session.flush()
     accept(session, task, result, now, reused=True)
     return True
+
+
+def _among(account: str, fingerprint: str) -> str:
+    """Name of a result among those of one account, which no other account takes up; empty: among those of all."""
+    return digest_of({"account": account, "fingerprint": fingerprint}) if account else fingerprint
 
 
 def accept(session: Session, task: Task, result: Result, now: datetime, *, reused: bool) -> None:

@@ -13,6 +13,7 @@ from datetime import timedelta
 from sqlalchemy import ColumnElement, delete, or_, select
 from sqlalchemy.orm import Session
 
+from store.account_models import AuditEntry, RequestCount, WebSession
 from store.db import Database
 from store.leasing import lock_inspection
 from store.models import (
@@ -41,6 +42,7 @@ class Retention:
     """What has outlived its use, in one database."""
 
     db: Database
+    audit_days: float = 365.0
 
     def expire(self) -> int:
         """Mark inspections as deleted whose time is over; returns how many."""
@@ -142,7 +144,11 @@ class Retention:
             return set(session.scalars(select(Upload.id).where(Upload.removed_at.is_(None))))
 
     def tidy(self) -> None:
-        """Delete what nobody asks for any more: old requests, absent workers, removed uploads, ended reservations."""
+        """Delete what nobody asks for any more.
+
+        These are old requests, absent workers, removed uploads, ended reservations and sessions, counts of former
+        minutes, and entries of the audit log after their time.
+        """
         with self.db.write() as session:
             now = self.db.now(session)
             old, unseen = now - timedelta(days=_IDEMPOTENCY_DAYS), now - timedelta(days=_WORKER_DAYS)
@@ -150,6 +156,9 @@ class Retention:
             session.execute(delete(Worker).where(Worker.seen_at < unseen))
             session.execute(delete(Upload).where(Upload.removed_at < now - timedelta(days=_UPLOAD_DAYS)))
             session.execute(delete(Reservation).where(Reservation.expires_at < now))
+            session.execute(delete(WebSession).where(WebSession.expires_at < now))
+            session.execute(delete(RequestCount).where(RequestCount.minute < now - timedelta(minutes=2)))
+            session.execute(delete(AuditEntry).where(AuditEntry.at < now - timedelta(days=self.audit_days)))
 
 
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))

@@ -14,7 +14,8 @@ from core.scene import defect as declared_events
 from core.scene import detection as declared_detections
 from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 
-# Whoever takes the base class from here has all tables in its metadata.
+# Whoever takes the base class from here has all tables in its metadata, those of accounts included.
+from store.account_models import DEFAULT_ACCOUNT
 from store.columns import Base as Base
 from store.columns import Choice, with_columns_of
 
@@ -76,14 +77,22 @@ class Inspection(Base):
     """Folder of a local run; empty in a server, whose files are in the artifact store."""
     failed_stage: Mapped[str | None] = mapped_column(String(64))
     error: Mapped[dict[str, Any] | None]
-    owner: Mapped[str] = mapped_column(String(64), default="", index=True)
-    """Id of the API key that made it; empty without keys. Who asks with another key does not find it."""
+    owner: Mapped[str] = mapped_column(String(64), default=DEFAULT_ACCOUNT, index=True)
+    """Id of the account that it belongs to. Who asks with a key of another account does not find it."""
     label: Mapped[str] = mapped_column(String(256), default="")
     external_id: Mapped[str] = mapped_column(String(256), default="", index=True)
     parameters: Mapped[dict[str, Any] | None]
     """As they were asked for; `settings` is what they meant."""
     attempt: Mapped[int] = mapped_column(default=1)
     """Grows with every retry."""
+    priority: Mapped[int] = mapped_column(default=0)
+    """0 to 9; higher ones of an account go first. See `store.turns`."""
+    input_bytes: Mapped[int] = mapped_column(BigInteger, default=0)
+    """Size of the files that it was made from; 0 for those from before it was written down."""
+    published_bytes: Mapped[int] = mapped_column(BigInteger, default=0)
+    """Size of its published files."""
+    reuse_account: Mapped[str] = mapped_column(String(64), default="")
+    """The account whose finished results it may take up, and no other's; empty: those that all share."""
     progress: Mapped[float] = mapped_column(default=0.0)
     """Highest share shown in this attempt."""
     published: Mapped[int] = mapped_column(default=0)
@@ -278,7 +287,7 @@ class Upload(Base):
     __tablename__ = "uploads"
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
-    owner: Mapped[str] = mapped_column(String(64), default="", index=True)
+    owner: Mapped[str] = mapped_column(String(64), default=DEFAULT_ACCOUNT, index=True)
     length: Mapped[int] = mapped_column(BigInteger)
     offset: Mapped[int] = mapped_column(BigInteger, default=0)
     """Bytes that were on disk for certain when this was committed."""
@@ -298,7 +307,7 @@ class Reservation(Base):
     __tablename__ = "reservations"
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
-    owner: Mapped[str] = mapped_column(String(64), default="")
+    owner: Mapped[str] = mapped_column(String(64), default=DEFAULT_ACCOUNT)
     kind: Mapped[ReservationKind] = mapped_column(Choice(ReservationKind))
     bytes: Mapped[int] = mapped_column(BigInteger, default=0)
     """Still to be written."""
@@ -320,20 +329,6 @@ class Artifact(Base):
     sha256: Mapped[str] = mapped_column(String(64))
     media_type: Mapped[str] = mapped_column(String(128))
     created_at: Mapped[datetime]
-
-
-class ApiKey(Base):
-    """Who may call. The key itself is shown once and never kept."""
-
-    __tablename__ = "api_keys"
-
-    id: Mapped[str] = mapped_column(String(64), primary_key=True)
-    name: Mapped[str] = mapped_column(String(128))
-    digest: Mapped[str] = mapped_column(String(64), unique=True)
-    """SHA-256 of a key of 256 random bits: nothing to guess, so no salt and no slow hash."""
-    created_at: Mapped[datetime]
-    revoked_at: Mapped[datetime | None]
-    last_used_at: Mapped[datetime | None]
 
 
 class IdempotencyKey(Base):

@@ -33,6 +33,7 @@ from store.leasing import (
 from store.models import LEASABLE, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import Lease, Result
+from store.turns import begin_turn, inspections_in_turn
 
 
 @dataclass(frozen=True)
@@ -53,14 +54,9 @@ class Plan:
     def lease(
         self, owner: str, *, inspection_id: str | None = None, queues: Collection[str] = tuple(Queue)
     ) -> Lease | None:
-        """Take the first runnable task, of the oldest inspection first; None when there is none."""
+        """Take the first runnable task of the inspection whose turn it is (`store.turns`); None when there is none."""
         with self.db.read() as session:
-            query = (
-                select(Inspection.id)
-                .where(Inspection.state.in_(LEASABLE))
-                .where(select(Task.id).where(*_runnable(Inspection.id, queues)).exists())
-                .order_by(Inspection.created_at, Inspection.id)
-            )
+            query = inspections_in_turn(select(Task.id).where(*_runnable(Inspection.id, queues)).exists())
             if inspection_id is not None:
                 query = query.where(Inspection.id == inspection_id)
             candidates = session.scalars(query).all()
@@ -94,6 +90,7 @@ class Plan:
                 return None
             task = session.get_one(Task, task_id, populate_existing=True)
             begin_attempt(session, task, now)
+            begin_turn(session, inspection.owner, now)
             inspection.state, inspection.started_at = InspectionState.RUNNING, inspection.started_at or now
             return lease_of(session, inspection, task)
 

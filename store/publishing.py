@@ -15,6 +15,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, delete, or_, select, update
 from sqlalchemy.orm import Session
 
+from store.account_models import Account
 from store.db import Database
 from store.files import Stored
 from store.leasing import changed, lock_inspection
@@ -116,7 +117,8 @@ class Publishing:
                 "published": ticket.attempt,
                 "publisher": None,
                 "publish_expires_at": None,
-                "expires_at": now + timedelta(days=self.retention_days) if self.retention_days else None,
+                "published_bytes": sum(file.size for file in files),
+                "expires_at": self._until(session, inspection.owner, now),
                 "updated_at": now,
             }
             if not changed(session, update(Inspection).where(*_held(ticket)).values(values)):
@@ -124,6 +126,13 @@ class Publishing:
             _replace_artifacts(session, ticket, files, now)
             replace_rows(session, inspection.id, rows)
             return True
+
+    def _until(self, session: Session, owner: str, now: datetime) -> datetime | None:
+        """When retention ends, by the account's own time or the deployment's; None = never."""
+        account = session.get(Account, owner)
+        own = None if account is None else account.retention_days
+        days = self.retention_days if own is None else own
+        return now + timedelta(days=days) if days else None
 
 
 def _due(now: datetime) -> tuple[ColumnElement[bool], ...]:

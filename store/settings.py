@@ -69,12 +69,34 @@ class DeploymentSettings(BaseSettings):
     max_annotations_bytes: int = Field(128 << 20, ge=1, description="largest annotation file")
     max_active: int = Field(100, ge=1, description="inspections queued or running, at most; more get 429")
     max_active_per_owner: int = Field(
-        50, ge=1, description="the same of one owner, that is one key; without keys all callers are one"
+        50, ge=1, description="the same of one owner, that is one account; an account may have limits of its own"
     )
     max_open_uploads: int = Field(
         1000, ge=1, description="unfinished uploads, and forms while they come in, at most; more get 429"
     )
     max_open_uploads_per_owner: int = Field(100, ge=1, description="the same of one owner")
+    max_promised_bytes: int = Field(
+        0, ge=0, description="bytes that open uploads and forms may still send, at most; 0 = as the disk has room"
+    )
+    max_promised_bytes_per_owner: int = Field(
+        256 << 30, ge=0, description="the same of one owner; 0 = no limit, more get 429"
+    )
+    max_kept_bytes: int = Field(
+        0, ge=0, description="bytes of uploads, inputs and published files, at most; 0 = as the disk has room"
+    )
+    max_kept_bytes_per_owner: int = Field(0, ge=0, description="the same of one owner; 0 = no limit, more get 429")
+    max_requests_per_minute: int = Field(
+        0, ge=0, description="requests answered in a minute of the clock, by all servers together; 0 = no limit"
+    )
+    max_requests_per_minute_per_owner: int = Field(
+        0, ge=0, description="the same of one owner; 0 = no limit, more get 429"
+    )
+    share_results: bool = Field(
+        False,
+        description="an account takes up finished results of others for the same input; a fast answer then tells that "
+        "others had it",
+    )
+    audit_days: float = Field(365.0, gt=0, description="the audit log is kept so long, in days")
     max_frame_pixels: int = Field(
         MAX_FRAME_PIXELS,
         ge=1,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, and_, case, func, or_, select, update
+from sqlalchemy import ColumnElement, case, func, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.report.summary import stage_state
@@ -17,6 +17,7 @@ from store.db import Database
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import changed
 from store.models import ACTIVE_INSPECTION, OVER_TASK, CaseRow, Inspection, Task
+from store.turns import queued_in_turn
 
 STEP = 0.005
 """Progress is shown in steps of this, so that remembering the highest costs few writes."""
@@ -133,17 +134,20 @@ class Statuses:
             row = session.get(Inspection, inspection_id)
             if row is None:
                 return None
-            status = self._status(session, row, _counted(session, [row.id]).get(row.id, {}))
+            positions = _positions(session, [row])
+            status = self._status(session, row, _counted(session, [row.id]).get(row.id, {}), positions)
         self._remember(status)
         return status
 
     def read_many(self, rows: Sequence[Inspection]) -> list[InspectionStatus]:
         """The same for a page of rows, with one query for all their stages."""
         with self.db.read() as session:
-            counted = _counted(session, [row.id for row in rows])
-            return [self._status(session, row, counted.get(row.id, {})) for row in rows]
+            counted, positions = _counted(session, [row.id for row in rows]), _positions(session, rows)
+            return [self._status(session, row, counted.get(row.id, {}), positions) for row in rows]
 
-    def _status(self, session: Session, row: Inspection, groups: Mapping[str, Sequence[Any]]) -> InspectionStatus:
+    def _status(
+        self, session: Session, row: Inspection, groups: Mapping[str, Sequence[Any]], positions: Mapping[str, int]
+    ) -> InspectionStatus:
         state = shown_state(row)
         over = row.state not in ACTIVE_INSPECTION
         stages = tuple(_stage(name, groups.get(name, ()), over) for name in self.graph.stages)
@@ -153,7 +157,7 @@ class Statuses:
             stage=_current(stages, state, over),
             stages=stages,
             progress=self._progress(row, state, stages),
-            queue_position=_position(session, row) if state == InspectionState.QUEUED else None,
+            queue_position=positions.get(row.id),
             selected_case=_selected(session, row.id) if state not in ACTIVE_INSPECTION else None,
         )
 
@@ -243,14 +247,11 @@ def _current(stages: Sequence[StageStatus], state: InspectionState, over: bool) 
     return next(iter([*running, *waiting]), None)
 
 
-def _position(session: Session, row: Inspection) -> int:
-    """Place among the queued: the plan hands out work in order of creation."""
-    earlier = or_(
-        Inspection.created_at < row.created_at,
-        and_(Inspection.created_at == row.created_at, Inspection.id < row.id),
-    )
-    ahead = select(func.count()).select_from(Inspection).where(Inspection.state == InspectionState.QUEUED, earlier)
-    return int(session.scalar(ahead) or 0) + 1
+def _positions(session: Session, rows: Iterable[Inspection]) -> dict[str, int]:
+    """Place among the queued, from 1; asked for only when one of the rows is queued."""
+    if all(row.state != InspectionState.QUEUED for row in rows):
+        return {}
+    return {name: place for place, name in enumerate(queued_in_turn(session), 1)}
 
 
 def _selected(session: Session, inspection_id: str) -> str | None:

@@ -20,6 +20,7 @@ from core.scene.case import CaseKind, CaseReason, CaseStatus, StartMode
 from core.scene.detection import Outcome, PlacementMethod, Reason
 from core.scene.frame import Role
 from core.states import AttemptOutcome, InspectionState, Queue, RunState, StageState, TaskState, run_state
+from store.account_models import Scope
 from store.models import ReservationKind
 from worker.events import EventKind
 from worker.task import StopReason
@@ -41,6 +42,7 @@ DECLARED = {
     "queue": {member.value for member in Queue},
     "stop": {member.value for member in StopReason},
     "stopped": {member.value for member in StopReason},
+    "scope": {member.value for member in Scope},
     "fate": {member.value for member in Fate},
 }
 """Values by the name of the attribute or key that holds them."""
@@ -50,7 +52,7 @@ code of an error, and others have kinds and statuses too."""
 KINDS = (
     *(InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict),
     *(Reason, PlacementMethod, Role, CaseKind, CaseStatus, CaseReason, StartMode),
-    *(Queue, EventKind, ReservationKind, StopReason, Fate),
+    *(Queue, EventKind, ReservationKind, StopReason, Fate, Scope),
 )
 KEY_MODULE = "core/task_key.py"
 PUBLISHED = "core/outputs.py"

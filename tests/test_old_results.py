@@ -26,9 +26,9 @@ from cli.main import main
 from core.errors import BadInput
 from core.settings import make_settings
 from core.videos import Recording
+from store.account_models import ApiKey
 from store.db import open_sqlite
 from store.factory import open_artifacts, open_database
-from store.models import ApiKey
 from store.settings import DeploymentSettings
 from tests.old_release import answers, missing, unpack
 from tests.worker import fake_stages

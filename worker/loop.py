@@ -150,7 +150,7 @@ class WorkerService:
             settings.heartbeat_s,
         )
         cleaner = Cleaner(
-            Retention(self.database),
+            Retention(self.database, settings.audit_days),
             self.inspections,
             self.plan,
             self.store,

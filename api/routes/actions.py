@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from api.auth import CallerOf
+from api.auth import Submitter
 from api.finding import find_inspection
 from api.limits import require_space
 from api.problems import FieldError, Refused, pointer, responses
@@ -17,7 +17,7 @@ from api.routes.inspections import represent
 from api.schemas import Parameters, Resource
 from api.services import Services
 from api.state import state_of
-from api.submit import settings_of
+from api.submit import require_priority, settings_of
 from core.fingerprint import canonical_json
 from core.settings import Settings
 from core.states import InspectionState
@@ -53,7 +53,7 @@ class Retry(BaseModel):
     summary="Stop an inspection",
     responses=responses(401, 404, 409, 410, 503),
 )
-async def cancel(request: Request, caller: CallerOf, inspection_id: str) -> Response:
+async def cancel(request: Request, caller: Submitter, inspection_id: str) -> Response:
     """Ask to stop; every process of it is gone within 10 s. Asking again changes nothing; 409 once it is over."""
     state = state_of(request)
     await run_in_threadpool(_cancel, state.services, inspection_id, caller.owner)
@@ -76,7 +76,7 @@ def _cancel(services: Services, inspection_id: str, owner: str) -> None:
     summary="Try an inspection again",
     responses=responses(400, 401, 404, 409, 410, 422, 429, 503, 507),
 )
-async def retry(request: Request, caller: CallerOf, inspection_id: str, body: Retry | None = None) -> Response:
+async def retry(request: Request, caller: Submitter, inspection_id: str, body: Retry | None = None) -> Response:
     """Begin the next attempt: what is unchanged is taken over, parameters may change. 409 while it is active."""
     state = state_of(request)
     await run_in_threadpool(_retry, state.services, inspection_id, caller.owner, body or Retry())
@@ -90,6 +90,7 @@ def _retry(services: Services, inspection_id: str, owner: str, asked: Retry) -> 
         raise Refused(HTTPStatus.CONFLICT, "active", "the inspection is not over; cancel it first")
     _require_stage(services, asked.from_stage)
     settings, changes = _settings(row, asked.parameters)
+    require_priority(services, owner, changes.get("priority", 0))
     require_space(services)
     # The place is held first: a retry that is refused must not have cost results.
     with services.admission.place(owner) as place:
@@ -121,8 +122,8 @@ def _settings(row: Inspection, parameters: Parameters | None) -> tuple[Settings,
         status = HTTPStatus.UNPROCESSABLE_ENTITY
         raise Refused(status, "bad_parameters", errors[0].detail, where="options", errors=errors) from None
     changes: dict[str, Any] = {"parameters": {"preset": parameters.preset, "options": parameters.options}}
-    given = {"label": parameters.label, "external_id": parameters.external_id}
-    changes.update({name: text for name, text in given.items() if text})
+    given = {"label": parameters.label, "external_id": parameters.external_id, "priority": parameters.priority}
+    changes.update({name: value for name, value in given.items() if value})
     return settings_of(parameters), changes
 
 

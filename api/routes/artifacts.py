@@ -16,7 +16,7 @@ from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from zipstream import ZipStream
 
-from api.auth import CallerOf
+from api.auth import Reader
 from api.finding import find_inspection
 from api.negotiation import Span, matches, wanted_span
 from api.problems import not_found, responses
@@ -61,7 +61,7 @@ class Artifacts(BaseModel):
 
 
 @router.get("/artifacts", summary="List the files", responses=responses(401, 404, 410, 503))
-def listing(request: Request, caller: CallerOf, inspection_id: str) -> Artifacts:
+def listing(request: Request, caller: Reader, inspection_id: str) -> Artifacts:
     """Size, SHA-256 and media type of every published file; empty until the inspection is over."""
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
@@ -94,7 +94,7 @@ def _item(inspection_id: str, view: ArtifactView) -> ArtifactItem:
 @router.head("/artifacts/{path:path}", summary="Size and hash of a file", include_in_schema=False)
 def fetch(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     path: str,
     range: Annotated[str | None, Header(description="one range of bytes", examples=["bytes=1048576-"])] = None,
@@ -159,7 +159,7 @@ def _repr_digest(sha256: str) -> str:
 )
 def archive(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     include: Annotated[
         list[str] | None,

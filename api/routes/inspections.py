@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from datetime import UTC, datetime
+from datetime import datetime
 from http import HTTPStatus
 from typing import Annotated
 
@@ -12,11 +12,11 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from api import schemas
-from api.auth import Caller, CallerOf
+from api.auth import Caller, Reader, Submitter
 from api.finding import find_inspection, gone, is_id
 from api.negotiation import matches
 from api.paging import next_link
-from api.parameters import Text
+from api.parameters import Text, moment
 from api.problems import Refused, not_found, responses
 from api.sending import CREATE_BODY, asked_by_form, asked_by_json
 from api.state import State, state_of
@@ -51,7 +51,7 @@ _LATER = {"Retry-After": {"description": "seconds, while it is active", "schema"
 )
 async def create(
     request: Request,
-    caller: CallerOf,
+    caller: Submitter,
     idempotency_key: Annotated[
         str | None,
         Header(
@@ -122,7 +122,7 @@ def _send(snapshot: Snapshot, status: HTTPStatus, headers: dict[str, str]) -> Re
 )
 async def look(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     wait: Annotated[
         float,
@@ -154,7 +154,7 @@ async def look(
 def listing(
     request: Request,
     response: Response,
-    caller: CallerOf,
+    caller: Reader,
     state: Annotated[list[schemas.State] | None, Query(description="any of these", examples=[["running"]])] = None,
     label: Annotated[Text | None, Query(description="exactly this label")] = None,
     external_id: Annotated[Text | None, Query(description="exactly this external id")] = None,
@@ -170,8 +170,8 @@ def listing(
         states=tuple(state or ()),
         label=label,
         external_id=external_id,
-        created_after=_moment(created_after, "created_after"),
-        created_before=_moment(created_before, "created_before"),
+        created_after=moment(created_after, "created_after"),
+        created_before=moment(created_before, "created_before"),
     )
     services = here.services
     page = list_inspections(services.db, chosen, limit, cursor)
@@ -183,16 +183,6 @@ def listing(
     )
 
 
-def _moment(value: datetime | None, name: str) -> datetime | None:
-    if value is None:
-        return None
-    try:
-        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
-    except OverflowError:
-        detail = "this moment is outside the calendar"
-        raise Refused(HTTPStatus.UNPROCESSABLE_ENTITY, "bad_request", detail, where=name) from None
-
-
 @router.delete(
     "/{inspection_id}",
     status_code=204,
@@ -200,7 +190,7 @@ def _moment(value: datetime | None, name: str) -> datetime | None:
     summary="Delete an inspection",
     responses=responses(401, 404, 410, 503),
 )
-async def delete(request: Request, caller: CallerOf, inspection_id: str) -> Response:
+async def delete(request: Request, caller: Submitter, inspection_id: str) -> Response:
     """Stop it if it is active, and remove it: from now on its id answers 410; files go soon after."""
     state = state_of(request)
     await run_in_threadpool(_delete, state, inspection_id, caller.owner)

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from api.auth import caller
+from api.auth import Reader, requires
 from api.problems import responses
 from api.schemas import Parameters
 from api.sending import MAX_INLINE_BYTES, MAX_PARAMETERS_BYTES
@@ -16,8 +16,13 @@ from api.state import state_of
 from core.annotations.form import json_schema
 from core.settings import PRESET_NAMES, Settings, make_settings, option_names
 from core.settings.describe import describe_options
+from store.account_models import Scope
+from store.accounts import Accounts
+from store.settings import DeploymentSettings
 
-router = APIRouter(prefix="/v1", tags=["options"], dependencies=[Depends(caller)], responses=responses(401))
+router = APIRouter(
+    prefix="/v1", tags=["options"], dependencies=[Depends(requires(Scope.READ))], responses=responses(401)
+)
 
 _SCHEMA_TYPE = "application/schema+json"
 
@@ -134,6 +139,12 @@ class Limits(BaseModel):
                 "max_active_per_owner": 50,
                 "max_open_uploads": 1000,
                 "max_open_uploads_per_owner": 100,
+                "max_promised_bytes": 0,
+                "max_promised_bytes_per_owner": 274877906944,
+                "max_kept_bytes": 0,
+                "max_kept_bytes_per_owner": 0,
+                "max_requests_per_minute": 0,
+                "max_requests_per_minute_per_owner": 0,
                 "max_frame_pixels": 40000000,
                 "max_video_frames": 500000,
                 "max_video_seconds": 21600.0,
@@ -152,9 +163,15 @@ class Limits(BaseModel):
     max_parameters_bytes: int = Field(description="largest `parameters` of a form")
     max_json_bytes: int = Field(description="largest JSON body")
     max_active: int = Field(description="inspections queued or running at once; more get 429")
-    max_active_per_owner: int = Field(description="the same of one owner")
+    max_active_per_owner: int = Field(description="the same of this account, as all that end in `_per_owner`")
     max_open_uploads: int = Field(description="unfinished uploads, and forms that come in, at once; more get 429")
     max_open_uploads_per_owner: int = Field(description="the same of one owner")
+    max_promised_bytes: int = Field(description="bytes that open uploads may still send; more get 429; 0 = no limit")
+    max_promised_bytes_per_owner: int = Field(description="the same of this account")
+    max_kept_bytes: int = Field(description="bytes of uploads, inputs and published files; more get 429; 0 = no limit")
+    max_kept_bytes_per_owner: int = Field(description="the same of this account")
+    max_requests_per_minute: int = Field(description="requests in a minute of the clock; more get 429; 0 = no limit")
+    max_requests_per_minute_per_owner: int = Field(description="the same of this account")
     max_frame_pixels: int = Field(description="largest picture of a video in pixels; larger ones get 422")
     max_video_frames: int = Field(description="frames that a video's header may state; more get 422")
     max_video_seconds: float = Field(description="length that a video's header may state; longer ones get 422")
@@ -167,25 +184,15 @@ class Limits(BaseModel):
 
 
 @router.get("/limits", summary="What this server takes")
-def limits(request: Request) -> Limits:
-    """Sizes in bytes, times in hours and days."""
-    settings = state_of(request).services.settings
-    return Limits(
-        max_upload_bytes=settings.max_upload_bytes,
-        max_annotations_bytes=settings.max_annotations_bytes,
-        max_parameters_bytes=MAX_PARAMETERS_BYTES,
-        max_json_bytes=MAX_INLINE_BYTES,
-        max_active=settings.max_active,
-        max_active_per_owner=settings.max_active_per_owner,
-        max_open_uploads=settings.max_open_uploads,
-        max_open_uploads_per_owner=settings.max_open_uploads_per_owner,
-        max_frame_pixels=settings.max_frame_pixels,
-        max_video_frames=settings.max_video_frames,
-        max_video_seconds=settings.max_video_seconds,
-        probe_seconds=settings.probe_seconds,
-        probe_wait_seconds=settings.probe_wait_seconds,
-        max_probes_waiting=settings.max_probes_waiting,
-        max_probes_waiting_per_owner=settings.max_probes_waiting_per_owner,
-        upload_hours=settings.upload_hours,
-        retention_days=settings.retention_days,
-    )
+def limits(request: Request, caller: Reader) -> Limits:
+    """Sizes in bytes, times in hours and days. Where the account has a limit of its own, that is told."""
+    services = state_of(request).services
+    settings, accounts = services.settings, Accounts(services.db)
+    values = {
+        **{name: getattr(settings, name) for name in Limits.model_fields if name in DeploymentSettings.model_fields},
+        **accounts.limits(caller.owner, settings),
+        "retention_days": accounts.retention_days(caller.owner, settings),
+        "max_parameters_bytes": MAX_PARAMETERS_BYTES,
+        "max_json_bytes": MAX_INLINE_BYTES,
+    }
+    return Limits.model_validate(values)

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, RootModel
 from sqlalchemy import select
 
-from api.auth import CallerOf
+from api.auth import Reader
 from api.finding import find_inspection
 from api.negotiation import CSV_RESPONSE, Format, table
 from api.parameters import Text
@@ -71,7 +71,7 @@ StageTable = RootModel[list[StageDetail]]
     summary="Every stage: state, counts, attempts, times, memory, workers",
     responses={**CSV_RESPONSE, **responses(401, 404, 410, 503)},
 )
-def stages(request: Request, caller: CallerOf, inspection_id: str, format: Format = None) -> Response:
+def stages(request: Request, caller: Reader, inspection_id: str, format: Format = None) -> Response:
     """Stages in the order of the method, as JSON or CSV."""
     state = state_of(request)
     services = state.services
@@ -127,7 +127,7 @@ class LogPage(BaseModel):
 @router.get("/logs", summary="Read the logs", responses=responses(400, 401, 404, 410, 422, 503))
 def logs(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     after: Annotated[str | None, Query(max_length=8000, description="`next` of the answer before")] = None,
     limit: Annotated[int, Query(ge=1, le=5000, description="lines at most")] = 500,

@@ -11,7 +11,7 @@ from prometheus_client.core import GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 from pydantic import BaseModel, ConfigDict, Field
 
-from api.auth import CallerOf
+from api.auth import Reader
 from api.limits import free_bytes
 from api.problems import responses
 from api.services import Services
@@ -62,7 +62,7 @@ class System(BaseModel):
 
 
 @router.get("/v1/system", summary="Versions, queues, workers", responses=responses(401, 503))
-def system(request: Request, caller: CallerOf) -> System:
+def system(request: Request, caller: Reader) -> System:
     """Versions come from package metadata; no engine is loaded. Nothing here names an inspection."""
     counts = count_all(state_of(request).services.db)
     queues: dict[str, QueueItem] = {}
@@ -88,7 +88,7 @@ def system(request: Request, caller: CallerOf) -> System:
         **responses(401, 503),
     },
 )
-def metrics(request: Request, caller: CallerOf) -> Response:
+def metrics(request: Request, caller: Reader) -> Response:
     """Counts from the database, so every API process says the same; durations of this process's requests."""
     return Response(generate_latest(state_of(request).registry), media_type=CONTENT_TYPE_LATEST)
 

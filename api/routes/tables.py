@@ -11,7 +11,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import BaseModel
 
 from api import table_schemas as schemas
-from api.auth import CallerOf
+from api.auth import Reader
 from api.finding import find_inspection
 from api.negotiation import CSV_RESPONSE, Format, TableForm, matches, table, wants_csv
 from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
@@ -48,7 +48,7 @@ To = Annotated[Seconds | None, Query(description="seconds from the first frame: 
 
 
 def _answer(
-    request: Request, caller: CallerOf, inspection_id: str, what: Table, chosen: RowFilter, asked: Asked
+    request: Request, caller: Reader, inspection_id: str, what: Table, chosen: RowFilter, asked: Asked
 ) -> Response:
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
@@ -69,7 +69,7 @@ def _answer(
 )
 def cases(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     asked: AskedFor,
     kind: Annotated[str, OneOf(CaseKind)] | None = None,
@@ -80,7 +80,7 @@ def cases(
 
 
 @router.get("/cases/{name}", response_model=schemas.Case, summary="One case", responses=_ERRORS)
-def case(request: Request, caller: CallerOf, inspection_id: str, name: str) -> BaseModel:
+def case(request: Request, caller: Reader, inspection_id: str, name: str) -> BaseModel:
     """One row of cases.csv by its name, e.g. `seg_000_0000_0180`."""
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
@@ -98,7 +98,7 @@ def case(request: Request, caller: CallerOf, inspection_id: str, name: str) -> B
     summary="Every number that a stage found",
     responses=TABLE_RESPONSES,
 )
-def metrics(request: Request, caller: CallerOf, inspection_id: str, asked: AskedFor) -> Response:
+def metrics(request: Request, caller: Reader, inspection_id: str, asked: AskedFor) -> Response:
     """Names are `<task key>.<fact>`."""
     return _answer(request, caller, inspection_id, METRICS, RowFilter({}), asked)
 
@@ -111,7 +111,7 @@ def metrics(request: Request, caller: CallerOf, inspection_id: str, asked: Asked
 )
 def detections(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     asked: AskedFor,
     outcome: Annotated[str, OneOf(Outcome)] | None = None,
@@ -137,7 +137,7 @@ def detections(
 )
 def timeline(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     asked: AskedFor,
     video: Video = None,
@@ -160,7 +160,7 @@ def timeline(
 )
 def defects(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     asked: AskedFor,
     label: Label = None,
@@ -184,7 +184,7 @@ def defects(
 )
 def quality(
     request: Request,
-    caller: CallerOf,
+    caller: Reader,
     inspection_id: str,
     format: Format = None,
     if_none_match: Annotated[str | None, Header(description="an `ETag` that is at hand")] = None,

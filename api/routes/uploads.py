@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from api.auth import CallerOf
+from api.auth import Submitter
 from api.finding import is_id
 from api.problems import Refused, not_found, responses
 from api.receiving import receive_patch
@@ -71,7 +71,7 @@ def capabilities(request: Request) -> Response:
 )
 def create(
     request: Request,
-    caller: CallerOf,
+    caller: Submitter,
     upload_length: Annotated[str | None, Header(description="size of the file in bytes", examples=["13107200"])] = None,
     upload_metadata: Annotated[
         str | None, Header(description="`name base64,name base64`", examples=["filename dHVyYmluZS5tcDQ="])
@@ -96,7 +96,7 @@ def create(
     dependencies=_TUS,
     responses={200: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE}, **responses(401, 404, 410, 412)},
 )
-def offset(request: Request, caller: CallerOf, upload_id: str) -> Response:
+def offset(request: Request, caller: Submitter, upload_id: str) -> Response:
     """The offset to go on from: what was committed and is on disk."""
     upload = _find(request, upload_id, caller.owner)
     headers = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.length), "Cache-Control": "no-store"}
@@ -119,7 +119,7 @@ def offset(request: Request, caller: CallerOf, upload_id: str) -> Response:
 )
 async def send(
     request: Request,
-    caller: CallerOf,
+    caller: Submitter,
     upload_id: str,
     upload_offset: Annotated[str | None, Header(description="where these bytes begin", examples=["0"])] = None,
 ) -> Response:
@@ -141,7 +141,7 @@ async def send(
     dependencies=_TUS,
     responses=responses(401, 404, 410, 412, 423),
 )
-def terminate(request: Request, caller: CallerOf, upload_id: str) -> Response:
+def terminate(request: Request, caller: Submitter, upload_id: str) -> Response:
     """Remove an upload and its bytes; inspections that were made from it keep theirs."""
     state = state_of(request)
     upload = _find(request, upload_id, caller.owner)

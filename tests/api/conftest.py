@@ -20,8 +20,11 @@ from sqlalchemy import update
 from api.app import create_app
 from api.services import Services, make_services
 from core.settings import make_settings
+from store.account_models import DEFAULT_ACCOUNT, USUAL_SCOPES, Scope
+from store.accounts import Accounts
 from store.db import Database
 from store.factory import open_artifacts, open_database
+from store.keys import Keys
 from store.models import Artifact, Inspection
 from store.records import InputFiles
 from store.settings import DeploymentSettings
@@ -49,8 +52,20 @@ class Backend:
         settings = self.services.settings.model_copy(update=changes)
         return Backend(replace(self.services, settings=settings), self.woken)
 
+    def key(self, account: str, *scopes: Scope, **more: Any) -> dict[str, str]:
+        """Headers with a new key of an account, which is made when it is missing."""
+        if account not in (one.id for one in Accounts(self.db).all()):
+            Accounts(self.db).create(account)
+        key = Keys(self.db).create(f"{account}'s key", account, scopes or USUAL_SCOPES, **more)[1]
+        return {"Authorization": f"Bearer {key}"}
+
     def create(
-        self, name: str, owner: str = "", video: str = "", options: dict[str, Any] | None = None, **more: Any
+        self,
+        name: str,
+        owner: str = DEFAULT_ACCOUNT,
+        video: str = "",
+        options: dict[str, Any] | None = None,
+        **more: Any,
     ) -> str:
         """An inspection as the API would have made it; its id is made from `name`, its video from it or `video`."""
         inspection_id = hashlib.md5(name.encode(), usedforsecurity=False).hexdigest()
@@ -92,7 +107,9 @@ class Backend:
             values = {"path": path, "key": key, "size": size, "sha256": sha256, "media_type": media_type}
             session.merge(Artifact(inspection_id=inspection_id, created_at=self.db.now(session), **values))
 
-    def finished(self, name: str, files: dict[str, bytes] | None = None, owner: str = "", **rows: Any) -> str:
+    def finished(
+        self, name: str, files: dict[str, bytes] | None = None, owner: str = DEFAULT_ACCOUNT, **rows: Any
+    ) -> str:
         """An inspection that succeeded and is published."""
         inspection_id = self.create(name, owner)
         self.work(inspection_id)

@@ -46,9 +46,8 @@ def test_with_keys_everybody_needs_one(backend: Backend) -> None:
             assert answers == dict.fromkeys(PATHS, 401), "the last key is revoked: nobody is let in"
 
 
-def test_an_upload_of_another_key_is_not_found(backend: Backend) -> None:
-    keys = Keys(backend.db)
-    mine, other = ({"Authorization": f"Bearer {keys.create(name)[1]}", **TUS} for name in ("mine", "other"))
+def test_an_upload_of_another_account_is_not_found(backend: Backend) -> None:
+    mine, other = ({**backend.key(account), **TUS} for account in ("mine", "other"))
     client = client_of(backend)
     url = client.post("/v1/uploads", headers={**mine, "Upload-Length": "3"}).headers["Location"]
     body = {"Content-Type": "application/offset+octet-stream", "Upload-Offset": "0"}

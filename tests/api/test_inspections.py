@@ -14,7 +14,6 @@ from sqlalchemy import update
 
 from core.errors import NoReconstruction, ResourceError
 from store.files import ArtifactStore
-from store.keys import Keys
 from store.models import Inspection
 from store.status import Statuses
 from tests.api.conftest import Backend, client_of
@@ -285,13 +284,11 @@ def test_flags_of_the_report_are_warnings_of_the_resource(backend: Backend) -> N
     assert body["versions"] == {"bladeatlas": "9.9"}
 
 
-def test_another_key_finds_nothing(backend: Backend) -> None:
-    keys = Keys(backend.db)
-    (mine, my_key), (_, other_key) = keys.create("mine"), keys.create("other")
-    one = backend.finished("one", {"summary.json": b"{}"}, owner=mine.id)
+def test_another_account_finds_nothing(backend: Backend) -> None:
+    mine, other = backend.key("mine"), backend.key("other")
+    one = backend.finished("one", {"summary.json": b"{}"}, owner="mine")
     client = client_of(backend)
-    for key, status in ((my_key, 200), (other_key, 404)):
-        headers = {"Authorization": f"Bearer {key}"}
+    for headers, status in ((mine, 200), (other, 404)):
         for path in ("", "/stages", "/artifacts/summary.json", "/logs"):
             assert client.get(f"/v1/inspections/{one}{path}", headers=headers).status_code == status
         listed = client.get("/v1/inspections", headers=headers).json()["inspections"]

@@ -10,6 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from api.problems import MEDIA_TYPE
+from store.account_models import DEFAULT_ACCOUNT
 from tests.api.conftest import TUS, Backend, client_of
 from tests.api.test_submit import form, leftovers, post
 from tests.api.test_uploads import begin
@@ -106,7 +107,7 @@ def test_damaged_headers_of_uploads(backend: Backend, client: TestClient) -> Non
         method, path = chance.choice([("POST", "/v1/uploads"), ("PATCH", url), ("HEAD", url)])
         answer = client.request(method, path, headers=headers, content=b"" if method == "POST" else b"x")
         assert answer.status_code in (200, 201, 204, 400, 409, 412, 413, 415), (headers, answer.text)
-    found = backend.services.uploads.find(url.rsplit("/", 1)[1], "")
+    found = backend.services.uploads.find(url.rsplit("/", 1)[1], DEFAULT_ACCOUNT)
     assert found is not None
     assert found.offset <= 50
 

@@ -21,6 +21,7 @@ from schemathesis.specs.openapi.checks import (
 
 from api.app import create_app
 from api.problems import MEDIA_TYPE
+from store.account_models import Scope
 from store.keys import Keys
 from tests.api.conftest import Backend
 from tests.api.test_results import ROWS
@@ -101,9 +102,9 @@ class Asked:
 
 @pytest.fixture
 def asked(backend: Backend, unprobed: None) -> Asked:
-    view, key = Keys(backend.db).create("generated requests")
+    key = Keys(backend.db).create("generated requests", scopes=tuple(Scope))[1]
     files = {"quality.json": b'{"verdict": "ok", "flags": []}', "mapping/timeline.csv": b"event_id\r\n"}
-    one = backend.finished("one", files, owner=view.id, **ROWS)
+    one = backend.finished("one", files, **ROWS)
     return Asked(create_app(backend.services), one, {"Authorization": f"Bearer {key}"})
 
 

@@ -19,7 +19,6 @@ from api.app import create_app
 from api.probing import Prober
 from core.settings import make_settings
 from core.videos import Recording
-from store.keys import Keys
 from store.settings import DeploymentSettings
 from tests.api.conftest import VIDEO, Backend, client_of, wait_until
 from tests.api.test_submit import leftovers, post, rows
@@ -36,8 +35,7 @@ class Flood:
         self.app = create_app(backend.services)
         self.turns = self.app.state.bladeatlas.prober.turns
         self.address = serve(self.app)
-        keys = Keys(backend.db)
-        self.headers = {name: {"Authorization": f"Bearer {keys.create(name)[1]}"} for name in ("many", "one")}
+        self.headers = {name: backend.key(name) for name in ("many", "one")}
 
     async def post(self, client: httpx.AsyncClient, owner: str, video: bytes) -> httpx.Response:
         files = {"video": ("v.mp4", video)}

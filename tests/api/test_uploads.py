@@ -18,6 +18,7 @@ import pytest
 from fastapi.testclient import TestClient
 from tusclient.client import TusClient
 
+from store.account_models import DEFAULT_ACCOUNT
 from tests.api.conftest import TUS, Backend, client_of, free_port, wait_until
 
 _BYTES = {"Content-Type": "application/offset+octet-stream"}
@@ -53,7 +54,7 @@ def test_an_upload_in_two_parts(backend: Backend, client: TestClient) -> None:
     assert seen.headers["Upload-Metadata"] == f"filename {name},empty"
     assert patch(client, url, 1_500_000, data[1_500_000:]).headers["Upload-Offset"] == "3000000"
     assert stored(backend, url) == data
-    upload = backend.services.uploads.find(url.rsplit("/", 1)[1], "")
+    upload = backend.services.uploads.find(url.rsplit("/", 1)[1], DEFAULT_ACCOUNT)
     assert upload is not None
     assert upload.complete
     assert upload.sha256 == hashlib.sha256(data).hexdigest()
@@ -142,7 +143,7 @@ def test_bytes_that_were_never_confirmed_are_cut_off(backend: Backend, client: T
     assert offset_of(client, url) == 3
     assert patch(client, url, 3, b"3456789").headers["Upload-Offset"] == "10"
     assert stored(backend, url) == b"0123456789"
-    upload = backend.services.uploads.find(path.name, "")
+    upload = backend.services.uploads.find(path.name, DEFAULT_ACCOUNT)
     assert upload is not None
     assert upload.sha256 in (None, hashlib.sha256(b"0123456789").hexdigest())
 

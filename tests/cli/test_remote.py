@@ -146,6 +146,46 @@ def test_keys_are_made_listed_and_revoked(
     assert "revoked" in call("keys", "list")[1]
 
 
+def test_accounts_are_made_changed_exported_and_deleted(
+    backend: Backend, call: Callable[..., tuple[int, str]], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("BLADEATLAS_DATA_DIR", str(backend.services.settings.data_dir))
+    monkeypatch.setenv("BLADEATLAS_GRAPH", "tests.store.small_plan:GRAPH")
+    made = json.loads(call("accounts", "create", "shop", "--max-active", "3", "--json")[1])
+    assert (made["id"], made["max_active"], made["retention_days"]) == ("shop", 3, None)
+    call("accounts", "set", "shop", "--max-active", "usual", "--retention-days", "7.5")
+    assert "shop  open  retention_days=7.5 max_priority=9  shop" in call("accounts", "list")[1]
+    assert call("accounts", "set", "shop", "--max-active", "many")[0] == exits.BAD_INPUT
+    assert call("keys", "create", "station")[0] == exits.BAD_INPUT, "of which of two accounts is not said"
+    key = json.loads(call("keys", "create", "station", "--account", "shop", "--scopes", "read", "--json")[1])
+    assert (key["account_id"], key["scopes"]) == ("shop", ["read"])
+    for wrong in (("--scopes", "raed"), ("--days", "-1"), ("--days", "nan")):
+        assert call("keys", "create", "x", "--account", "shop", *wrong)[0] == exits.BAD_INPUT
+    new = call("keys", "rotate", key["id"], "--keep-hours", "1")[1].strip()
+    assert new.startswith("ba_")
+    done = backend.finished("done", {"quality.json": b"{}"}, owner="shop")
+    video = tmp_path / "v.mp4"
+    video.write_bytes(b"video")
+    backend.services.artifacts.put(backend.services.inspections.get(done).files.video, video)
+    assert call("accounts", "export", "shop", "--out", str(tmp_path / "out"))[0] == exits.DONE
+    record = json.loads((tmp_path / "out" / "account.json").read_text())
+    assert [one["id"] for one in record["inspections"]] == [done]
+    assert (tmp_path / "out" / done / "inputs" / "video").read_bytes() == b"video"
+    assert (tmp_path / "out" / done / "quality.json").read_bytes() == b"{}"
+    assert call("accounts", "export", "shop", "--out", str(tmp_path / "out"))[0] == exits.BAD_INPUT
+    assert call("accounts", "delete", "shop")[0] == exits.BAD_INPUT, "nothing says that it is meant"
+    assert call("accounts", "delete", "shop", "--yes")[0] == exits.DONE
+    assert "shop  closed" in call("accounts", "list")[1]
+    assert "valid" not in call("keys", "list", "--account", "shop")[1]
+    log = call("accounts", "audit", "--limit", "3")[1].splitlines()
+    assert [line.split("  ")[2:] for line in log] == [
+        ["bladeatlas accounts delete", "shop", "200"],
+        ["bladeatlas accounts delete", "shop", "422 bad_input"],
+        ["bladeatlas accounts export", "shop", "422 bad_input"],
+    ]
+    assert new not in call("accounts", "audit", "--json")[1]
+
+
 class Cut(Exception):
     """The network fails."""
 

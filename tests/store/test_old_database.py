@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -10,12 +12,15 @@ from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Engine
+from sqlalchemy import Engine, text
 
 from store.db import alembic_config, make_engine, sqlite_url, upgrade
 from store.models import Base
 from tests.databases import BOTH, database_url
 from tests.old_release import REVISION, Rows, rows_of, unpack, write_rows
+
+ACCOUNTS = "0006"
+"""The revision that gave keys accounts."""
 
 
 @pytest.fixture
@@ -49,6 +54,14 @@ def shared(rows: Rows, like: Rows) -> Rows:
     }
 
 
+def with_default_account(rows: Rows) -> Rows:
+    """The rows as they are once what was made without keys belongs to an account."""
+    return {
+        name: sorted(({**row, "owner": row["owner"] or "default"} if "owner" in row else row for row in found), key=str)
+        for name, found in rows.items()
+    }
+
+
 def test_the_data_has_what_a_deployment_has(written: Engine) -> None:
     rows = rows_of(written)
     states = sorted(row["state"] for row in rows["inspections"])
@@ -65,9 +78,35 @@ def test_an_upgrade_keeps_every_row_and_a_downgrade_brings_the_old_tables_back(o
     before = rows_of(old)
     for _ in range(2):
         upgrade(old.url)
-        assert shared(rows_of(old), before) == {name: rows for name, rows in before.items() if rows}
+        after, kept = rows_of(old), {name: rows for name, rows in with_default_account(before).items() if rows}
+        assert shared(after, before) == shared(kept, before) == kept
+        accounts = {row["id"]: row["name"] for row in after["accounts"]}
+        assert accounts == {"default": "default", **{row["id"]: row["name"] for row in before["api_keys"]}}
+        assert all(row["account_id"] == row["id"] for row in after["api_keys"]), "each old key is an account"
+        assert {row["owner"] for row in after["inspections"]} <= set(accounts)
         command.downgrade(alembic_config(old.url), REVISION)
         assert rows_of(old) == before
+
+
+def test_what_an_account_has_goes_back_to_one_of_its_keys(old: Engine) -> None:
+    upgrade(old.url)
+    rows = rows_of(old)
+    (first, *_), count = rows["api_keys"], len(rows["inspections"])
+    later = {**first, "revoked_at": None, "expires_at": None, "created_at": datetime(2040, 1, 1)}
+    account = {**rows["accounts"][0], "id": "shop", "name": "shop"}
+    news = [{**later, "id": f"{i}", "digest": f"{i}", "account_id": "shop"} for i in range(3)]
+    news[0]["revoked_at"] = datetime(2041, 1, 1)
+    news.append({**later, "id": "9", "digest": "9", "account_id": "default"})
+    write_rows(old, {"accounts": [account], "api_keys": news})
+    with old.begin() as connection:
+        connection.execute(text("UPDATE inspections SET owner = 'shop' WHERE owner <> 'default'"))
+    command.downgrade(alembic_config(old.url), "0005")
+    after = rows_of(old)
+    owners = Counter(row["owner"] for row in after["inspections"])
+    assert set(owners) == {"1", "9"}, "the oldest key that is valid; keys see now what was made without any"
+    assert owners.total() == count
+    upgrade(old.url)
+    assert {row["owner"] for row in rows_of(old)["inspections"]} == {"1", "9"}, "each of these keys is an account now"
 
 
 def test_every_step_down_keeps_what_its_tables_still_hold(old: Engine) -> None:
@@ -81,6 +120,8 @@ def test_every_step_down_keeps_what_its_tables_still_hold(old: Engine) -> None:
         after = rows_of(old)
         kept = {name: rows for name, rows in before.items() if name in after}
         assert {name: len(rows) for name, rows in after.items()} == {name: len(rows) for name, rows in kept.items()}
+        if step.revision == ACCOUNTS:
+            kept, after = with_default_account(kept), with_default_account(after)
         assert shared(kept, after) == {name: rows for name, rows in after.items() if rows}, step.revision
         if old.dialect.name == "sqlite":
             with old.connect() as connection:

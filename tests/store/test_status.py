@@ -9,6 +9,7 @@ from sqlalchemy import update
 
 from core.errors import BadInput
 from core.settings import make_settings
+from store.account_models import DEFAULT_ACCOUNT
 from store.db import Database
 from store.inspections import Inspections, delete_results_from, mark_deleted
 from store.listing import Filter, count_active, list_inspections
@@ -72,7 +73,7 @@ def test_a_page_says_the_same_as_single_reads(db: Database) -> None:
     create(db, "one")
     work(db, "one", 2)
     create(db, "two", label="x")
-    page = list_inspections(db, Filter(""), 10, None)
+    page = list_inspections(db, Filter(DEFAULT_ACCOUNT), 10, None)
     found = Statuses(db, GRAPH).read_many(page.rows)
     assert [each.row.id for each in found] == ["two", "one"]
     for each in found:
@@ -89,14 +90,14 @@ def test_pages_cover_everything_once_even_at_equal_times(db: Database) -> None:
     seen: list[str] = []
     cursor: str | None = None
     while True:
-        page = list_inspections(db, Filter(""), 3, cursor)
+        page = list_inspections(db, Filter(DEFAULT_ACCOUNT), 3, cursor)
         seen += [row.id for row in page.rows]
         if (cursor := page.cursor) is None:
             break
     assert seen == names[::-1]
     for wrong in ("", "x", "W10", "WyJ4IiwieSJd"):
         with pytest.raises(BadInput):
-            list_inspections(db, Filter(""), 3, wrong)
+            list_inspections(db, Filter(DEFAULT_ACCOUNT), 3, wrong)
 
 
 def test_deleted_ones_and_those_of_others_are_not_listed(db: Database) -> None:

@@ -1,0 +1,85 @@
+"""Whose task is next: turns go round the accounts, and within an account priority decides, then age.
+
+Of the accounts that have something to run, that one is next of which the fewest tasks run now; of several, the one
+whose last task began first. So 20 inspections of one account do not keep a single one of another waiting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, Select, Subquery, UnaryExpression, func, select, update
+from sqlalchemy.orm import Session
+
+from core.states import InspectionState, TaskState
+from store.account_models import Account
+from store.models import LEASABLE, Inspection, Task
+
+_Order = tuple[ColumnElement[Any] | UnaryExpression[Any], ...]
+
+
+def inspections_in_turn(*where: ColumnElement[bool]) -> Select[str]:
+    """Ids of inspections whose tasks may start and that fulfil `where`, in the order in which they get a turn."""
+    running = _running()
+    return (
+        _with_turns(select(Inspection.id), running)
+        .where(Inspection.state.in_(LEASABLE), *where)
+        .order_by(*_accounts_in_turn(running), *_within_account())
+    )
+
+
+def begin_turn(session: Session, owner: str, now: datetime) -> None:
+    """Note that a task of an account is leased in this transaction."""
+    session.execute(update(Account).where(Account.id == owner).values(turn_at=now))
+
+
+def queued_in_turn(session: Session) -> Sequence[str]:
+    """Ids of queued inspections in the order in which they will start, as far as it is known now.
+
+    An account's first one comes before any account's second. What an account has running already counts as its first
+    ones: it goes on with these before it begins another.
+    """
+    running = _running()
+    rank = func.row_number().over(partition_by=Inspection.owner, order_by=_within_account()).label("rank")
+    ranked = (
+        _with_turns(
+            select(
+                Inspection.id.label("id"),
+                Inspection.state.label("state"),
+                rank,
+                func.row_number().over(order_by=(*_accounts_in_turn(running), *_within_account())).label("turn"),
+            ),
+            running,
+        )
+        .where(Inspection.state.in_(LEASABLE))
+        .subquery()
+    )
+    query = select(ranked.c.id).where(ranked.c.state == InspectionState.QUEUED)
+    return session.scalars(query.order_by(ranked.c.rank, ranked.c.turn)).all()
+
+
+def _running() -> Subquery:
+    """How many tasks of each account run now."""
+    return (
+        select(Inspection.owner.label("owner"), func.count().label("tasks"))
+        .join(Task, Task.inspection_id == Inspection.id)
+        .where(Task.state == TaskState.LEASED)
+        .group_by(Inspection.owner)
+        .subquery()
+    )
+
+
+def _with_turns(query: Select[Any], running: Subquery) -> Select[Any]:
+    """The query with what the order of accounts is told from."""
+    with_running = query.outerjoin(running, running.c.owner == Inspection.owner)
+    return with_running.outerjoin(Account, Account.id == Inspection.owner)
+
+
+def _accounts_in_turn(running: Subquery) -> _Order:
+    return (func.coalesce(running.c.tasks, 0), Account.turn_at.asc().nulls_first())
+
+
+def _within_account() -> _Order:
+    return (Inspection.priority.desc(), Inspection.created_at.asc(), Inspection.id.asc())

@@ -12,27 +12,29 @@ from core.io.sparse import model_folder, read_model
 from core.mapping.support import boxes_by_frame, verified_detections
 from core.scene.case import CaseKind
 from core.sparse.reduce import Candidate, candidates_of, find_candidate, reduce_refined
-from core.stage import StageResult, StageTask
+from core.stage import Facts, StageResult, StageTask
 from core.task_key import key_of
 
 
 def run(task: StageTask) -> StageResult:
-    """Rank the refined cases against the best coarse one and keep the winner's model.
-
-    The winner is known only here, so its model is copied: later stages need no case by name.
-    """
+    """Rank the refined cases against the best coarse one and keep the winner's model."""
     best = find_candidate(candidates_of(task.facts, CaseKind.COARSE), str(task.facts["reduce_coarse"]["best"]))
     cases = [best, *candidates_of(task.facts, CaseKind.REFINE)]
     if task.settings.model.prefer_verified:
-        cases = _with_verified(task, cases)
+        cases = with_verified(task, cases)
     facts = reduce_refined(cases[0], cases[1:], task.settings.model.veto)
-    winner = task.input(key_of(str(facts["kind"]), part=str(facts["best"])))
-    shutil.copytree(model_folder(winner), model_folder(task.out))
+    keep_winner(task, facts)
     task.report(1, 1, f"{len(cases) - 1} refined cases ranked")
     return StageResult(facts)
 
 
-def _with_verified(task: StageTask, cases: Sequence[Candidate]) -> list[Candidate]:
+def keep_winner(task: StageTask, facts: Facts) -> None:
+    """Copy the model of the case that `facts` of a reducer name: later stages need no case by name."""
+    winner = task.input(key_of(str(facts["kind"]), part=str(facts["best"])))
+    shutil.copytree(model_folder(winner), model_folder(task.out))
+
+
+def with_verified(task: StageTask, cases: Sequence[Candidate]) -> list[Candidate]:
     """The cases with the detections that each one's model verifies; none without a model."""
     frames = task.input("frames")
     detections = read_detections(task.input("annotations"))

@@ -91,12 +91,12 @@ STAGES: dict[str, StageSpec] = {
         _spec(
             "matches", *_MATCHER, "matching.window", version=2, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
-        _spec("bridge", *_MATCHER, version=2, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
+        _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),
         _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=25),
         _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
         _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
-        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=3, weight=0.1),
+        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.1),
         _spec("prune", weight=0.1),
         _spec("part", "mapper", "seed", fan_out=True, weight=0.5),
         _spec("reduce_parts", "model.prefer_verified", weight=0.1),
@@ -147,7 +147,7 @@ STAGES: dict[str, StageSpec] = {
             version=6,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=4, reads_video=True, weight=1),
+        _spec("gallery", "gallery", "mapping.method", version=5, reads_video=True, weight=1),
     )
 }
 

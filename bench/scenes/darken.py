@@ -1,4 +1,4 @@
-"""`bladeatlas-bench darken`: a cut of a video whose lights go out for some frames, to measure what a dark stretch does."""
+"""`bladeatlas-bench darken`: a cut of a video with truth whose lights go out for some frames."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def find_cuts(table: PairTable, model: pycolmap.Reconstruction, n_search: int) -
 
 
 def cut_apart(pairs: I64, misfit: F64, limit: float, n_search: int) -> list[int]:
-    """Frames k such that across no other place most pairs misfit by more than `limit`, once the sequence is cut at them.
+    """Frames k such that across no other place most pairs misfit by more than `limit`, once it is cut at all of them.
 
     The place with the largest share of such pairs is cut first, of equals the one with the largest median misfit: its
     pairs also reach over its neighbours, which may be right without them.

@@ -1,8 +1,8 @@
 """Pairs that triplets contradict: around three frames that are matched with each other the rotations must close.
 
 A pair of frames can have hundreds of inliers and a wrong motion: on an object with repeated parts, or where two frames
-share too little of the picture. What no single pair shows, a third frame does (Zach, Klopschitz, Pollefeys: Disambiguating
-visual relations using loop constraints, CVPR 2010; here a count instead of a belief).
+share too little of the picture. What no single pair shows, a third frame does (Zach, Klopschitz and Pollefeys,
+"Disambiguating visual relations using loop constraints", CVPR 2010; here a count stands for their belief).
 """
 
 from __future__ import annotations

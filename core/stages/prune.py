@@ -1,4 +1,4 @@
-"""Stage `prune`: the view graph without what a vetoed model and the triplets speak against, and the parts that are left."""
+"""Stage `prune`: the view graph without what a vetoed model and triplets speak against, and the parts left of it."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.scene.case import CaseKind
 from core.sparse.reduce import candidates_of, reduce_parts
 from core.stage import StageResult, StageTask
-from core.stages.reduce_refine import keep_winner, with_verified
+from core.stages.choice import keep_winner, with_verified
 
 
 def run(task: StageTask) -> StageResult:

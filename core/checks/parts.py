@@ -1,8 +1,10 @@
 """Where to cut a model that the checks vetoed, and the parts of the video that are left between the cuts.
 
-A check that vetoes a model says at which pairs of images it fails. Where nearly all pairs across one place of the
-sequence do, the two sides are put together wrongly, and each may be right by itself. Single pairs that do not fit stay:
-they are the evidence that the parts are judged by in their turn.
+Pairs are doubted without any model: those that a fundamental matrix explains better than a motion of the known lens,
+and those that triplets contradict. Where most pairs across a place of the sequence are, it is cut. Where no place is
+cut so, a check that vetoes a model says at which pairs it fails: where most pairs across one place do, the two sides
+are put together wrongly, and each may be right by itself. Single pairs that do not fit the model stay: they are the
+evidence that the parts are judged by in their turn.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from core.checks.rotations import MAX_CUT_DEG, MIN_PAIRS_AT_CUT, disagreement, m
 from core.matching.bridges import components_of, select
 from core.matching.cycles import contradicted
 from core.matching.jumps import spans_any
+from core.verification import UNCALIBRATED
 from core.viewgraph import PairTable
 
 if TYPE_CHECKING:
@@ -42,8 +45,8 @@ class Pruned:
 
     table: PairTable
     """All pairs; those taken out are there as tried in vain."""
-    contradicted: int
-    """Pairs taken out because triplets contradict them."""
+    doubted: int
+    """Verified pairs taken out because no motion of the lens explains them, or because triplets contradict them."""
     cuts: Sequence[int]
     """Frames k such that nothing joins the frames up to k with those after it any more."""
     parts: Sequence[tuple[int, int]]
@@ -59,12 +62,15 @@ def prune(table: PairTable, model: pycolmap.Reconstruction, position: F64, n_sea
         position: (n,) place of every frame in the sequence (`core.matching.jumps.positions`).
         n_search: frames from this on are out of order: they make no cut and no part.
     """
-    open_pairs = contradicted(table)
-    rest = select(table, ~open_pairs)
-    cuts = find_cuts(rest, model, n_search)
-    rest = select(rest, ~spans_any(rest, position, cuts))
-    parts = find_parts(rest, n_search) if cuts or open_pairs.any() else []
-    return Pruned(rest, int(open_pairs.sum()), cuts, parts)
+    doubted = table.verified & (table.config == UNCALIBRATED)
+    doubted |= contradicted(select(table, ~doubted))
+    # Where most pairs are doubted the others have only not been asked: they are in too few triplets.
+    cuts = cut_apart(table.pairs[table.verified], doubted[table.verified].astype(np.float64), 0.0, n_search)
+    # A model that was made of such pairs is bent over all its length, and would be cut at places that are right.
+    cuts = cuts or find_cuts(select(table, ~doubted), model, n_search)
+    rest = select(table, ~(doubted | spans_any(table, position, cuts)))
+    parts = find_parts(rest, n_search) if cuts or doubted.any() else []
+    return Pruned(rest, int(doubted.sum()), cuts, parts)
 
 
 def find_cuts(table: PairTable, model: pycolmap.Reconstruction, n_search: int) -> list[int]:

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.verification import CALIBRATED, STRONG_INLIERS
+from core.verification import CALIBRATED, STRONG_INLIERS, UNCALIBRATED
 from core.viewgraph import PairTable
 
 Bool = NDArray[np.bool_]
 I64 = NDArray[np.int64]
 
+MOVED = (CALIBRATED, UNCALIBRATED)
+"""Configurations whose rotation one motion alone explains; a plane leaves two."""
 CLOSES_DEG = 5.0
 """A triplet whose rotations, one after the other, lead back to within this is consistent."""
 MIN_TRIPLETS = 2
@@ -47,7 +49,7 @@ def contradicted(table: PairTable) -> Bool:
 
 def _triplets(table: PairTable) -> tuple[I64, Bool]:
     """(t, 3) rows of the pairs (a, b), (b, c) and (a, c) of every triplet of strong pairs, and which do not close."""
-    usable = (table.config == CALIBRATED) & (table.n_inliers >= STRONG_INLIERS)
+    usable = np.isin(table.config, MOVED) & (table.n_inliers >= STRONG_INLIERS)
     row_of = {(int(a), int(b)): row for row, (a, b) in enumerate(table.pairs.tolist()) if usable[row]}
     after: dict[int, list[int]] = {}
     for a, b in row_of:

@@ -27,7 +27,7 @@ def run(task: StageTask) -> StageResult:
     return StageResult(
         {
             **graph_facts(found.table, len(frames)),
-            "contradicted": found.contradicted,
+            "doubted": found.doubted,
             "cuts": [[cut, cut + 1] for cut in found.cuts],
             "parts": [list(part) for part in found.parts],
         }

@@ -12,6 +12,7 @@ import pytest
 from core.checks.parts import MIN_FRAMES, cut_apart, find_parts, prune
 from core.settings import make_settings
 from core.sparse.cases import Case
+from core.verification import UNCALIBRATED
 from core.viewgraph import PairTable
 from core.windows import sequential_pairs
 from tests.core.sparse.scene import Scene, make_scene, model_of, view_graph, write_graph
@@ -55,7 +56,7 @@ def welded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scene, PairTable, 
 def test_a_welded_model_is_cut_into_its_sides(welded: tuple[Scene, PairTable, pycolmap.Reconstruction]) -> None:
     _, table, model = welded
     found = prune(table, model, np.arange(N, dtype=np.float64), N)
-    assert (found.contradicted, found.cuts) == (0, [WELD])
+    assert (found.doubted, found.cuts) == (0, [WELD])
     assert found.parts == [(0, WELD + 1), (WELD + 1, N)]
     across = (table.pairs[:, 0] <= WELD) & (table.pairs[:, 1] > WELD)
     assert not found.table.n_inliers[across].any()
@@ -69,7 +70,24 @@ def test_a_model_that_fits_everywhere_leaves_no_parts(
     graph = write_graph(tmp_path / "graph", scene, table)
     right = model_of(Case(graph, 0, N, make_settings().mapper, 0))
     found = prune(table, right, np.arange(N, dtype=np.float64), N)
-    assert (found.contradicted, found.cuts, found.parts) == (0, [], [])
+    assert (found.doubted, found.cuts, found.parts) == (0, [], [])
+
+
+def test_where_most_pairs_are_uncalibrated_it_is_cut_whatever_the_model_says(
+    welded: tuple[Scene, PairTable, pycolmap.Reconstruction],
+) -> None:
+    _, table, _ = welded
+    across = np.flatnonzero((table.pairs[:, 0] <= 18) & (table.pairs[:, 1] > 18))
+    config = table.config.copy()
+    config[across[2:]] = UNCALIBRATED
+    nothing = pycolmap.Reconstruction()
+    found = prune(replace(table, config=config), nothing, np.arange(N, dtype=np.float64), N)
+    assert (found.doubted, found.cuts, found.parts) == (len(across) - 2, [18], [(0, 19), (19, N)])
+    single = table.config.copy()
+    single[across[0]] = UNCALIBRATED
+    found = prune(replace(table, config=single), nothing, np.arange(N, dtype=np.float64), N)
+    assert (found.doubted, found.cuts, found.parts) == (1, [], [(0, N)])
+    assert found.table.n_inliers[across[0]] == 0
 
 
 def test_a_frame_out_of_order_does_not_join_what_was_cut(

@@ -26,7 +26,7 @@ THIN_SHARE = 0.2
 MIN_DEGREE = 2
 """Strong pairs of a frame that is worth matching further: a black one has none."""
 SIDE = 6
-"""Frames on either side of a gap, each matched with each: all of them are tried."""
+"""Frames on either side of a gap, each matched with each; between two pieces all of them are tried."""
 PIECE_FRAMES = 8
 """Pieces of the graph with fewer frames are not sought out."""
 PIECE_SIDE = 5
@@ -34,7 +34,7 @@ PIECE_SIDE = 5
 MAX_PIECES = 4
 MAX_PAIRS = 300
 PROBES = 6
-"""Of two pieces, pairs spread over them that are tried first; the others only if one of these holds."""
+"""Inside a piece, and of pairs spread over two, those that are tried first; the others only if one of these holds."""
 AGREE_DEG = 4.0
 MIN_AGREEING = 3
 """Pairs that must agree before they join two pieces; the motion before and after counts as one of them."""
@@ -99,7 +99,7 @@ def bridge_places(table: PairTable, n_search: int) -> list[Place]:
     for before, after in find_gaps(table, n_search):
         left, right = usable[usable <= before][-SIDE:], usable[usable >= after][:SIDE]
         if len(left) and len(right) and labels[left[-1]] == labels[right[0]]:
-            wanted.append(_near(left, right))
+            wanted.append(_near(left, right, PROBES))
     large = sorted((piece for piece in pieces if len(piece) >= PIECE_FRAMES), key=len, reverse=True)[:MAX_PIECES]
     for row, one in enumerate(large):
         wanted += [_near(_spread(one), _spread(other), PROBES) for other in large[row + 1 :]]

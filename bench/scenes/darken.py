@@ -78,7 +78,7 @@ def _frames(path: Path, end: int) -> Iterator[NDArray[np.uint8]]:
         for index, frame in enumerate(container.decode(video=0)):
             if index == end:
                 return
-            yield frame.to_ndarray(format="rgb24")
+            yield np.asarray(frame.to_ndarray(format="rgb24"), np.uint8)
 
 
 def darkened(rgb: NDArray[np.uint8], light: float, rng: np.random.Generator) -> NDArray[np.uint8]:

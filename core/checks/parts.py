@@ -120,7 +120,7 @@ def cut_apart(pairs: I64, misfit: F64, limit: float, n_search: int) -> list[int]
 
 def find_parts(table: PairTable, n_search: int) -> list[tuple[int, int]]:
     """Half-open intervals of the frames that strong pairs join, the largest `MAX_PARTS` of them, by their start."""
-    inside = select(table, (table.pairs < n_search).all(axis=1))
+    inside = select(table, np.asarray((table.pairs < n_search).all(axis=1), np.bool_))
     labels = components_of(inside, n_search)
     groups = [np.flatnonzero(labels == label) for label in np.unique(labels)]
     large = sorted((group for group in groups if len(group) >= MIN_FRAMES), key=len, reverse=True)[:MAX_PARTS]

@@ -141,7 +141,7 @@ def _near(one: I64, other: I64, probes: int = MAX_PAIRS) -> Place:
 
 def _spread(frames: I64) -> I64:
     rows = np.linspace(0, len(frames) - 1, min(PIECE_SIDE, len(frames))).round().astype(int)
-    return frames[np.unique(rows)]
+    return np.asarray(frames[np.unique(rows)], np.int64)
 
 
 def agreeing(table: PairTable, extra: PairTable, n_frames: int, n_search: int) -> Bool:

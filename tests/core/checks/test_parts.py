@@ -26,7 +26,7 @@ def misfit(*welds: int) -> np.ndarray:
     spans = np.zeros(len(PAIRS), bool)
     for weld in welds:
         spans |= (PAIRS[:, 0] <= weld) & (PAIRS[:, 1] > weld)
-    return np.where(spans, 10.0, 1.0) - 0.01 * (PAIRS[:, 1] - PAIRS[:, 0])
+    return np.asarray(np.where(spans, 10.0, 1.0) - 0.01 * (PAIRS[:, 1] - PAIRS[:, 0]))
 
 
 @pytest.mark.parametrize("welds", [(), (14,), (9, 20), (9, 11)])

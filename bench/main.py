@@ -11,6 +11,7 @@ from pathlib import Path
 from bench import measurements
 from bench.mutate import command as mutate
 from bench.scenes import command as scenes
+from bench.scenes import darken
 from bench.soak import command as soak
 from core.errors import BadInput, BladeAtlasError
 
@@ -46,6 +47,9 @@ def make_parser() -> argparse.ArgumentParser:
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)
+    darken_parser = commands.add_parser("darken", help="cut a video with truth and take its light for some frames")
+    darken.add_arguments(darken_parser)
+    darken_parser.set_defaults(run=darken.command)
     mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
     mutate.add_arguments(mutate_parser)
     mutate_parser.set_defaults(run=mutate.command)

@@ -46,6 +46,9 @@ def _funnel(quality: dict[str, Any]) -> list[str]:
     # Approximate places are no step on the way to a defect: they stand beside the mapped ones.
     beside = f" (and {steps.pop('approximate')} approximate)" if steps.get("approximate") else ""
     steps.pop("approximate", None)
+    least = steps.pop("defects_at_least", None)
+    if least not in (None, steps.get("defects")):
+        steps["defects"] = f"{least} to {steps['defects']}"
     doubted = steps.pop("unconfirmed", 0)
     extra = {"mapped": beside, "defects": f" (and {doubted} detections that other frames deny)" if doubted else ""}
     texts = [f"{name.replace('_', ' ')} {value}{extra.get(name, '')}" for name, value in steps.items()]

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from core.scene.case import CaseKind
 from core.settings import Settings
 from core.stage import Facts
 from core.states import Queue
@@ -90,12 +91,15 @@ STAGES: dict[str, StageSpec] = {
         _spec(
             "matches", *_MATCHER, "matching.window", version=2, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
-        _spec("bridge", *_MATCHER, version=2, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
+        _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),
         _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=25),
         _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
         _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
-        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=3, weight=0.1),
+        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.1),
+        _spec("prune", weight=0.1),
+        _spec("part", "mapper", "seed", fan_out=True, weight=0.5),
+        _spec("reduce_parts", "model.prefer_verified", weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
         _spec(
             "extend",
@@ -143,7 +147,7 @@ STAGES: dict[str, StageSpec] = {
             version=7,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=4, reads_video=True, weight=1),
+        _spec("gallery", "gallery", "mapping.method", version=5, reads_video=True, weight=1),
     )
 }
 
@@ -174,7 +178,8 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
     Args:
         settings: of the run.
         facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``reduce_coarse``
-            {best, start, end}, ``undistort`` {n_views}.
+            {best, start, end}, ``reduce_refine`` {vetoed}, ``prune`` {parts}, ``undistort`` {n_views}, ``pieces``
+            {n_pieces}.
     """
     tasks = [
         TaskSpec("probe"),
@@ -233,17 +238,33 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     coarse_key = key_of("coarse", part=str(best["best"]))
     refine_keys = tuple(_case_key(window) for window in refined)
     tasks.append(TaskSpec("reduce_refine", ("annotations", "frames", "reduce_coarse", coarse_key, *refine_keys)))
-    tasks.append(TaskSpec("confirm", ("frames", "graph", "reduce_refine")))
-    tasks.append(TaskSpec("extend", ("frames", "graph", "confirm")))
+    if "reduce_refine" not in facts:
+        return tasks
+    graph, reducer = "graph", "reduce_refine"
+    if facts["reduce_refine"]["vetoed"]:
+        graph, reducer = "prune", "reduce_parts"
+        tasks.append(TaskSpec("prune", ("frames", "graph", "reduce_refine")))
+        if "prune" not in facts:
+            return tasks
+        tasks += _parts(facts["prune"]["parts"])
+    tasks.append(TaskSpec("confirm", ("frames", graph, reducer)))
+    tasks.append(TaskSpec("extend", ("frames", graph, "confirm")))
     if settings.model.further:
-        tasks.append(TaskSpec("pieces", ("frames", "graph", "extend")))
+        tasks.append(TaskSpec("pieces", ("frames", graph, "extend")))
     tasks.append(TaskSpec("undistort", ("frames", "extend")))
     if "undistort" not in facts:
         return tasks
-    return tasks + _dense_and_mapping(settings, facts)
+    return tasks + _dense_and_mapping(settings, facts, graph)
 
 
-def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
+def _parts(intervals: Sequence[Sequence[int]]) -> list[TaskSpec]:
+    """The parts left of a vetoed model, each mapped alone, and the choice among them."""
+    windows = [Window(CaseKind.PART, i, int(start), int(end)) for i, (start, end) in enumerate(intervals)]
+    cases = [_case(window, ("prune",)) for window in windows]
+    return [*cases, TaskSpec("reduce_parts", ("annotations", "frames", "reduce_refine", *(one.key for one in cases)))]
+
+
+def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: str) -> list[TaskSpec]:
     step, n_views = settings.compute.chunk_views, int(facts["undistort"]["n_views"])
     chunks = [(start, min(start + step, n_views)) for start in range(0, n_views, step)]
     tasks: list[TaskSpec] = []
@@ -257,20 +278,20 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts]) -> list[T
     tasks.append(TaskSpec("fuse", ("undistort", *(task.key for task in geometric))))
     tasks.append(TaskSpec("mesh", ("fuse",)))
     dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
-    tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", "graph", "extend", *dense_keys)))
+    tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", graph, "extend", *dense_keys)))
     tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "map_defects")))
     if settings.model.further and "pieces" not in facts:
         return tasks
     n_pieces = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
     timelines = ["timeline"]
     for piece in range(1, n_pieces + 1):
-        tasks += _of_piece(piece, timelines)
+        tasks += _of_piece(piece, timelines, graph)
         timelines.append(key_of("timeline", piece))
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
 
 
-def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
+def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec]:
     """Everything from the final model on for a further model, one task per stage; failing ones are an outcome."""
 
     def key(stage: str) -> str:
@@ -281,7 +302,7 @@ def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
     one = {"piece": piece}
     surface = (key("extend"), key("fuse"), key("mesh"))
     return [
-        TaskSpec(key("extend"), ("frames", "graph", "pieces"), one, optional=True),
+        TaskSpec(key("extend"), ("frames", graph, "pieces"), one, optional=True),
         TaskSpec(key("undistort"), ("frames", "pieces", key("extend")), one, optional=True),
         TaskSpec(depth, (key("undistort"),), whole, optional=True),
         TaskSpec(geometric, (key("undistort"), depth), whole, optional=True),
@@ -289,7 +310,7 @@ def _of_piece(piece: int, timelines: Sequence[str]) -> list[TaskSpec]:
         TaskSpec(key("mesh"), (key("fuse"),), one, optional=True),
         TaskSpec(
             key("map_defects"),
-            ("probe", "annotations", "frames", "graph", key("undistort"), geometric, *surface),
+            ("probe", "annotations", "frames", graph, key("undistort"), geometric, *surface),
             one,
             optional=True,
         ),

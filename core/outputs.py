@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from core.scene.case import REDUCERS
 from core.stage import Facts
 from core.task_key import key_of
 
@@ -83,7 +84,7 @@ def evidence_name(defect: int) -> str:
 
 def best_case(facts: Mapping[str, Facts]) -> str:
     """Task key of the case that the search chose; empty before the first reducer."""
-    for reducer in ("reduce_refine", "reduce_coarse"):
+    for reducer in REDUCERS:
         found = facts.get(reducer, {})
         if found.get("best"):
             return key_of(str(found.get("kind", "coarse")), part=str(found["best"]))

@@ -61,12 +61,16 @@ class StageTask:
         """Number of the model that it works on; 0 is the run's own."""
         return int(self.args.get("piece", 0))
 
-    def input(self, key: str) -> Path:
-        """Result folder of a dependency, that of its own model first; `StageFailed` when it has none."""
-        for name in (key_of(key, self.piece), key):
-            if name in self.inputs:
-                return self.inputs[name]
-        raise StageFailed(f"task {self.key} needs the result of {key}", where=self.key)
+    def input(self, *keys: str) -> Path:
+        """Result folder of the first of `keys` that it depends on, that of its own model before the run's own.
+
+        `StageFailed` when it depends on none of them.
+        """
+        for key in keys:
+            for name in (key_of(key, self.piece), key):
+                if name in self.inputs:
+                    return self.inputs[name]
+        raise StageFailed(f"task {self.key} needs the result of {' or '.join(keys)}", where=self.key)
 
     def has(self, key: str) -> bool:
         """Whether it depends on `key`, of its own model."""

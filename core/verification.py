@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from core.settings.groups import VerificationSettings
 
-UNDEFINED, DEGENERATE, CALIBRATED, PLANAR = 0, 1, 2, 4
+UNDEFINED, DEGENERATE, CALIBRATED, UNCALIBRATED, PLANAR = 0, 1, 2, 3, 4
 """COLMAP's configurations of a pair that are named in this code; 5 panoramic, 7 watermark."""
 
 STRONG_INLIERS = 30

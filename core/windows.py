@@ -22,7 +22,7 @@ class Window:
     @property
     def name(self) -> str:
         """The thesis's name, e.g. ``seg_000_0000_0180``."""
-        prefix = "seg" if self.kind == CaseKind.COARSE else "refine"
+        prefix = "seg" if self.kind == CaseKind.COARSE else self.kind
         return f"{prefix}_{self.index:03d}_{self.start:04d}_{self.end:04d}"
 
 

@@ -20,7 +20,7 @@ from sqlalchemy import ColumnElement, CursorResult, Select, delete, insert, insp
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
-from core.scene.case import CASE_COLUMNS
+from core.scene.case import CASE_COLUMNS, CaseKind
 from core.scene.defect import TIMELINE_COLUMNS
 from core.scene.detection import DETECTION_COLUMNS
 from core.stage import Facts
@@ -54,7 +54,7 @@ _PER_TASK: dict[str, type[Base]] = {"cases": CaseRow, "metrics": MetricRow}
 _WHOLE: dict[str, type[Base]] = {"detections": DetectionRow, "events": EventRow, "defects": DefectRow}
 """Tables that one task writes whole: the last one holds."""
 _TABLES = {**_PER_TASK, **_WHOLE}
-_CASE_STAGES = ("coarse", "refine")
+_CASE_STAGES = tuple(CaseKind)
 _TABLE_FILES: dict[str, dict[str, str]] = {
     "map_defects": {"detections": "detections.json"},
     "timeline": {"detections": "detections.json", "events": "timeline.json", "defects": "defects.json"},

@@ -167,7 +167,11 @@ def defects(
     blade: Blade = None,
     min_confidence: Confidence = None,
 ) -> Response:
-    """Records of mapping/defects.json; as CSV their lists are counted."""
+    """Records of mapping/defects.json; as CSV their lists are counted.
+
+    With the warning `several_models` two of them can be one defect: how many there are is the range
+    `funnel.defects_at_least` to `funnel.defects` of quality.json.
+    """
     chosen = RowFilter({"label": label, "blade": blade}, min_confidence)
     return _answer(request, caller, inspection_id, DEFECTS, chosen, asked)
 

@@ -11,7 +11,7 @@ from core.checks.joins import check_joins, tracks_of
 from core.checks.lens import check_lens
 from core.checks.matches import check_matches, match_agreement
 from core.checks.parallax import check_planar, largest_angle_deg, model_parallax
-from core.checks.rotations import check_rotations, disagreement, measured_rotations
+from core.checks.rotations import check_rotations, disagreement, measured_rotations, model_rotations
 from core.checks.stats import ModelStats, model_stats
 from core.flags import Flag, Severity, worst
 from core.viewgraph import PairTable
@@ -66,10 +66,8 @@ def check_model(
         n_frames: frames that took part.
         n_search: frames from this index on are out of order; None = all are in order.
     """
-    ids = sorted(model.reg_image_ids())
-    frames = np.array([image_id - 1 for image_id in ids], np.int64)
-    rotations = [model.image(image_id).cam_from_world().rotation.matrix() for image_id in ids]
-    found = disagreement(measured_rotations(graph), frames, np.array(rotations).reshape(-1, 3, 3))
+    frames, rotations = model_rotations(model)
+    found = disagreement(measured_rotations(graph), frames, rotations)
     camera = next(iter(model.cameras.values()))
     flags = [
         check_rotations(found),

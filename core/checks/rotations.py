@@ -9,6 +9,7 @@ disagreement is looked at cut by cut along the sequence and not only over all pa
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from scipy.spatial.transform import Rotation
 
 from core.flags import Flag, Severity
 from core.viewgraph import PairTable
+
+if TYPE_CHECKING:
+    import pycolmap
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -62,6 +66,13 @@ class Disagreement:
     def median_deg(self) -> float:
         """Over all pairs; 0 without any."""
         return float(np.median(self.angles_deg)) if len(self.angles_deg) else 0.0
+
+
+def model_rotations(model: pycolmap.Reconstruction) -> tuple[I64, F64]:
+    """(n,) registered frames of a model (image_id = index + 1), rising, and their (n, 3, 3) cam_from_world."""
+    ids = sorted(model.reg_image_ids())
+    rotations = [model.image(image_id).cam_from_world().rotation.matrix() for image_id in ids]
+    return np.array([image_id - 1 for image_id in ids], np.int64), np.array(rotations).reshape(-1, 3, 3)
 
 
 def disagreement(measured: PairRotations, frames: I64, cam_from_world: F64) -> Disagreement:

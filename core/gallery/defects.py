@@ -36,6 +36,7 @@ class DefectLine:
 
     number: int
     label: str
+    model: int
     size: float | None
     """Extent in `unit`; None = unknown."""
     size_sigma: float | None
@@ -81,6 +82,7 @@ def _line(record: DefectRecord, visits: Sequence[EventRow], frames: RunFrames) -
     return DefectLine(
         number=record.id,
         label=record.label,
+        model=record.model,
         size=extent.value,
         size_sigma=extent.sigma,
         unit=extent.unit,

@@ -18,6 +18,7 @@ from core.gallery.boxes import FrameBoxes, frame_file
 from core.gallery.defects import DefectLine
 from core.gallery.evidence import Evidence
 from core.gallery.palette import RGB
+from core.scene.defect import least_defects
 from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
 
 _PACKAGE = "core.gallery"
@@ -54,7 +55,8 @@ def gallery_page(
         # Both are files of this package, and nothing from outside enters them.
         style=Markup(_asset("gallery.css")),
         script=Markup(script),
-        lead=f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {len(defects)} defects",
+        lead=f"{len(rows)} detections on {n_frames} frames, {mapped} on the surface, {_count(defects)} defects",
+        n_models=len({line.model for line in defects}),
         defects=defects,
         evidence=evidence,
         frames=frames,
@@ -66,6 +68,12 @@ def gallery_page(
         frame_file=frame_file,
         n_videos=n_videos,
     )
+
+
+def _count(defects: Sequence[DefectLine]) -> str:
+    """How many defects there are: a range where several models may each hold a record of the same one."""
+    least = least_defects(line.model for line in defects)
+    return str(len(defects)) if least == len(defects) else f"{least} to {len(defects)}"
 
 
 def _asset(name: str) -> str:

@@ -7,6 +7,7 @@ different ones; pairs that join the same two pieces must agree on how these are 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ THIN_SHARE = 0.2
 MIN_DEGREE = 2
 """Strong pairs of a frame that is worth matching further: a black one has none."""
 SIDE = 6
-"""Frames on either side of a gap, each matched with each."""
+"""Frames on either side of a gap, each matched with each; between two pieces all of them are tried."""
 PIECE_FRAMES = 8
 """Pieces of the graph with fewer frames are not sought out."""
 PIECE_SIDE = 5
@@ -33,9 +34,12 @@ PIECE_SIDE = 5
 MAX_PIECES = 4
 MAX_PAIRS = 300
 PROBES = 6
-"""Of each place, pairs that are tried first; the others only if one of these holds."""
+"""Inside a piece, and of pairs spread over two, those that are tried first; the others only if one of these holds."""
 AGREE_DEG = 4.0
 MIN_AGREEING = 3
+"""Pairs that must agree before they join two pieces; the motion before and after counts as one of them."""
+MOTION_FRAMES = 10
+"""Frames before and after a gap that say how fast the view turns there."""
 
 
 def is_strong(table: PairTable) -> Bool:
@@ -72,49 +76,86 @@ def components_of(table: PairTable, n_frames: int) -> I64:
 Pair = tuple[int, int]
 
 
-def bridge_pairs(table: PairTable, n_search: int) -> list[list[Pair]]:
-    """Further pairs worth trying, place by place and the nearest in time first; at most `MAX_PAIRS` in all.
+@dataclass(frozen=True)
+class Place:
+    """Where the view graph is thin, and the pairs to strengthen it with, the nearest in time first."""
 
-    The places are the gaps and every two of the large pieces. No pair occurs twice.
+    pairs: Sequence[Pair]
+    probes: int
+    """So many of the pairs are tried first, the others only if one of these holds."""
+
+
+def bridge_places(table: PairTable, n_search: int) -> list[Place]:
+    """Further pairs worth trying, at most `MAX_PAIRS` in all; no pair occurs twice.
+
+    The places are, in this order: the gaps between two pieces, those of the largest pieces first; thin places inside
+    a piece; every two of the large pieces, at frames spread over them.
     """
     degree = np.bincount(table.pairs[is_strong(table)].ravel(), minlength=n_search)[:n_search]
     usable = np.flatnonzero(degree >= MIN_DEGREE)
-    wanted: list[list[Pair]] = []
+    labels = components_of(table, n_search)
+    pieces = [usable[labels[usable] == label] for label in np.unique(labels[usable])]
+    wanted = [_near(left[-SIDE:], right[:SIDE]) for left, right in facing(pieces)]
     for before, after in find_gaps(table, n_search):
         left, right = usable[usable <= before][-SIDE:], usable[usable >= after][:SIDE]
-        wanted.append(_by_distance([(int(a), int(b)) for a in left for b in right]))
-    labels = components_of(table, n_search)
-    sizes = np.bincount(labels[usable], minlength=1)
-    large = [int(label) for label in np.argsort(-sizes, kind="stable") if sizes[label] >= PIECE_FRAMES][:MAX_PIECES]
-    spread = {label: _spread(usable[labels[usable] == label]) for label in large}
+        if len(left) and len(right) and labels[left[-1]] == labels[right[0]]:
+            wanted.append(_near(left, right, PROBES))
+    large = sorted((piece for piece in pieces if len(piece) >= PIECE_FRAMES), key=len, reverse=True)[:MAX_PIECES]
     for row, one in enumerate(large):
-        for other in large[row + 1 :]:
-            wanted.append(_by_distance([(min(a, b), max(a, b)) for a in spread[one] for b in spread[other]]))
+        wanted += [_near(_spread(one), _spread(other), PROBES) for other in large[row + 1 :]]
     known = {(int(a), int(b)) for a, b in table.pairs}
-    places: list[list[Pair]] = []
+    places: list[Place] = []
     for place in wanted:
-        own = [pair for pair in place if pair not in known][: MAX_PAIRS - sum(len(one) for one in places)]
+        own = [pair for pair in place.pairs if pair not in known][: MAX_PAIRS - sum(len(one.pairs) for one in places)]
         known.update(own)
         if own:
-            places.append(own)
+            places.append(Place(own, place.probes))
     return places
 
 
-def _by_distance(pairs: Sequence[Pair]) -> list[Pair]:
-    return sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair))
+def facing(pieces: Sequence[I64]) -> list[tuple[I64, I64]]:
+    """Every two pieces with none between them as large as the smaller, the earlier first in each.
+
+    A dark stretch verifies within itself and is a piece: the light before it faces the light after it all the same.
+
+    Args:
+        pieces: frames of each, rising; the pieces in the order of their first frames.
+
+    Returns:
+        those of the largest pieces first, of equals the earliest.
+    """
+    found = [
+        (one, other)
+        for row, one in enumerate(pieces)
+        for column, other in enumerate(pieces[row + 1 :], row + 1)
+        if all(len(between) < min(len(one), len(other)) for between in pieces[row + 1 : column])
+    ]
+    return sorted(found, key=lambda two: -min(len(piece) for piece in two))
 
 
-def _spread(frames: I64) -> list[int]:
+def _near(one: I64, other: I64, probes: int = MAX_PAIRS) -> Place:
+    """Each frame of one side with each of the other."""
+    pairs = [(int(min(a, b)), int(max(a, b))) for a in one for b in other]
+    return Place(sorted(pairs, key=lambda pair: (pair[1] - pair[0], pair)), probes)
+
+
+def _spread(frames: I64) -> I64:
     rows = np.linspace(0, len(frames) - 1, min(PIECE_SIDE, len(frames))).round().astype(int)
-    return [int(frames[row]) for row in np.unique(rows)]
+    return np.asarray(frames[np.unique(rows)], np.int64)
 
 
-def agreeing(table: PairTable, extra: PairTable, n_frames: int) -> Bool:
+def agreeing(table: PairTable, extra: PairTable, n_frames: int, n_search: int) -> Bool:
     """(m,) which pairs of `extra` to believe.
 
     Those within one piece of `table` are. Between two pieces, the rotations measured along the sequence carry every
-    pair to one rotation between the pieces; the largest group that agrees on it is believed if it has
-    `MIN_AGREEING` pairs and is most of them.
+    pair to one rotation between the pieces; the largest group that agrees on it is believed if it is most of them and
+    has `MIN_AGREEING` members, of which the motion before and after the gap is one where it leads to the same rotation.
+
+    Args:
+        table: pairs of the sequence.
+        extra: pairs beyond it.
+        n_frames: frames in all.
+        n_search: frames from this on are out of order and tell nothing of the motion.
     """
     labels = components_of(table, n_frames)
     turned = _rotations(table, labels)
@@ -125,10 +166,42 @@ def agreeing(table: PairTable, extra: PairTable, n_frames: int) -> Bool:
     joins = np.sort(ends, axis=1)
     for join in np.unique(joins[across], axis=0):
         rows = np.flatnonzero(across & (joins == join).all(axis=1))
-        group = _largest_group(_between_pieces(extra, rows, labels, turned))
-        if len(group) >= MIN_AGREEING and 2 * len(group) > len(rows):
+        said = _between_pieces(extra, rows, labels, turned)
+        group = _largest_group(said)
+        foreseen = _by_motion(join, labels[:n_search], turned)
+        witness = foreseen is not None and _apart_deg(foreseen, said[group[0]]) <= AGREE_DEG
+        if len(group) + witness >= MIN_AGREEING and 2 * len(group) > len(rows):
             believed[rows[group]] = True
     return believed
+
+
+def _by_motion(join: I64, labels: I64, turned: Sequence[Rotation]) -> Rotation | None:
+    """How the piece with the higher label is turned against the other, if the view went on turning over the gap.
+
+    None where the pieces do not follow each other, one of them is too short, or the view does not turn alike before
+    and after.
+    """
+    early, late = sorted(
+        (np.flatnonzero(labels == label) for label in join), key=lambda frames: int(frames.min(initial=-1))
+    )
+    if min(len(early), len(late)) <= MOTION_FRAMES or early[-1] > late[0]:
+        return None
+    last, first = int(early[-1]), int(late[0])
+    before, after = int(early[-1 - MOTION_FRAMES]), int(late[MOTION_FRAMES])
+    rates = [
+        (turned[last] * turned[before].inv()).as_rotvec() / (last - before),
+        (turned[after] * turned[first].inv()).as_rotvec() / (after - first),
+    ]
+    gap = first - last
+    if np.degrees(np.linalg.norm(rates[1] - rates[0])) * gap > AGREE_DEG:
+        return None
+    over = Rotation.from_rotvec((rates[0] + rates[1]) / 2 * gap)
+    late_from_early = turned[first].inv() * over * turned[last]
+    return late_from_early if labels[last] == join[0] else late_from_early.inv()
+
+
+def _apart_deg(one: Rotation, other: Rotation) -> float:
+    return float(np.degrees((one.inv() * other).magnitude()))
 
 
 def _rotations(table: PairTable, labels: I64) -> list[Rotation]:
@@ -165,10 +238,7 @@ def _between_pieces(extra: PairTable, rows: I64, labels: I64, turned: Sequence[R
 
 def _largest_group(rotations: Sequence[Rotation]) -> I64:
     """Rows of the rotations within `AGREE_DEG` of the one that most are near to."""
-    near = [
-        np.flatnonzero([np.degrees((one.inv() * other).magnitude()) <= AGREE_DEG for other in rotations])
-        for one in rotations
-    ]
+    near = [np.flatnonzero([_apart_deg(one, other) <= AGREE_DEG for other in rotations]) for one in rotations]
     return max(near, key=len).astype(np.int64)
 
 

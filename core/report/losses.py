@@ -9,6 +9,7 @@ from core.flags import Flag, Severity
 from core.graph import STAGES
 from core.json_files import JsonObject
 from core.report.record import RunRecord, TaskRecord
+from core.scene.defect import DefectRecord, least_defects
 from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
 from core.states import RunState, TaskState
 from core.task_key import key_of, piece_of
@@ -60,8 +61,11 @@ FEW_SUPPORT_POINTS = 20
 """Support of this many points or fewer is called weak (thesis 3.4.5)."""
 
 
-def funnel(rows: Sequence[DetectionRow], n_defects: int, method: str) -> JsonObject:
-    """Detections left after each step. `surface_hit` and `verified` are null where the rules have no such step."""
+def funnel(rows: Sequence[DetectionRow], defects: Sequence[DefectRecord], method: str) -> JsonObject:
+    """Detections left after each step, and defects found, as a range where several models hold some.
+
+    `surface_hit` and `verified` are null where the rules have no such step.
+    """
     reasons = Counter(row.reason for row in rows)
     frame_found = len(rows) - reasons[Reason.NO_FRAME]
     registered = frame_found - sum(reasons[reason] for reason in WITHOUT_VIEW)
@@ -77,7 +81,8 @@ def funnel(rows: Sequence[DetectionRow], n_defects: int, method: str) -> JsonObj
         "mapped": sum(row.outcome == Outcome.MAPPED for row in rows),
         "approximate": sum(row.outcome == Outcome.APPROXIMATE for row in rows),
         "unconfirmed": sum(row.outcome == Outcome.MAPPED and row.defect_id is None for row in rows),
-        "defects": n_defects,
+        "defects": len(defects),
+        "defects_at_least": least_defects(record.model for record in defects),
     }
 
 

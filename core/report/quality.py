@@ -12,7 +12,7 @@ from core.report.record import Document, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.scene.case import CaseKind, CaseRow
-from core.scene.detection import DetectionRow
+from core.scene.detection import DetectionRow, Outcome
 from core.task_key import key_of, part_of, piece_of
 from core.thesis.search import refinement_gain, spread, weak_cases
 from core.thesis.tables import thesis_tables
@@ -26,6 +26,7 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     Worst first, none twice.
     """
     flags = [*_settings_flags(record), *missing_parts(record)]
+    flags += _several_models(record)
     still = cases_parallax([task.facts for task in record.tasks if task.stage in tuple(CaseKind) and task.facts])
     if still is not None:
         flags.append(still)
@@ -45,6 +46,16 @@ def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFiel
         return ()
     checks: Sequence[FlagFields] = task.facts.get("checks", ())
     return checks
+
+
+def _several_models(record: RunRecord) -> list[Flag]:
+    """Whether more than one model holds detections or defects."""
+    holding = {row.model for row in record.tables.mapped_rows or () if row.outcome != Outcome.UNPLACED}
+    numbers = sorted(number for number in holding | {one.model for one in record.tables.defects} if number is not None)
+    if len(numbers) < 2:
+        return []
+    where = f"models {', '.join(map(str, numbers))}"
+    return [Flag("several_models", Severity.WARNING, len(numbers), 1, where)]
 
 
 def _settings_flags(record: RunRecord) -> list[Flag]:
@@ -73,7 +84,7 @@ def build_quality(
 ) -> Document:
     """The object of quality.json. Unknown = null; nothing is guessed."""
     defects = [] if verdict == Verdict.REFUSED else record.tables.defects
-    steps = funnel(detections, len(defects), record.settings.mapping.method)
+    steps = funnel(detections, defects, record.settings.mapping.method)
     support = support_counts(detections, record.facts("map_defects").get("unique_support_points"))
     return {
         "schema_version": SCHEMA_VERSION,
@@ -95,6 +106,7 @@ def build_quality(
         "search": {
             "coarse": spread(cases, CaseKind.COARSE),
             "refined": spread(cases, CaseKind.REFINE),
+            "parts": spread(cases, CaseKind.PART),
             "gain": refinement_gain(cases),
             "weak": weak_cases(cases),
             "losers": _losers(record, cases),
@@ -196,7 +208,7 @@ def _losers(record: RunRecord, cases: Sequence[CaseRow]) -> list[dict[str, objec
 
     `verified_detections` is null for coarse cases, which lost before detections were asked for.
     """
-    ranked = record.facts("reduce_refine").get("ranking", ())
+    ranked = [row for reducer in ("reduce_refine", "reduce_parts") for row in record.facts(reducer).get("ranking", ())]
     verified = {row["name"]: row.get("verified_detections") for row in ranked}
     winner = next((row.name for row in cases if row.selected), "")
     checks = {part_of(task.key): task.facts.get("checks", ()) for task in record.of_stage(*CaseKind)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from core.report.record import RunRecord, TaskRecord
-from core.scene.case import CaseKind, CaseRow, CaseStatus
+from core.scene.case import REDUCERS, CaseKind, CaseRow, CaseStatus
 from core.scene.detection import DetectionRow, rows_without_model
 from core.scene.frame import FrameRow
 from core.states import TaskState
@@ -26,7 +26,7 @@ def frame_rows(record: RunRecord) -> list[FrameRow]:
 
 def selected_case(record: RunRecord) -> str:
     """Name of the case whose model went on; empty when the search found none."""
-    for reducer in ("reduce_refine", "reduce_coarse"):
+    for reducer in REDUCERS:
         facts = record.facts(reducer)
         if facts.get("best"):
             return str(facts["best"])

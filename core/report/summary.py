@@ -11,7 +11,7 @@ from core.graph import STAGES
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
-from core.scene.defect import DefectRecord, EventRow
+from core.scene.defect import DefectRecord, EventRow, least_defects
 from core.scene.detection import DetectionRow, Outcome
 from core.states import StageState, TaskState
 
@@ -123,4 +123,5 @@ def _headline(
         "mapped": sum(row.outcome == Outcome.MAPPED for row in detections),
         "events": len(timeline),
         "defects": len(defects),
+        "defects_at_least": least_defects(record.model for record in defects),
     }

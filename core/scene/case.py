@@ -13,6 +13,12 @@ class CaseKind(StrEnum):
 
     COARSE = "coarse"
     REFINE = "refine"
+    PART = "part"
+    """Of the frames between places that a check found wrong, after every other case was vetoed."""
+
+
+REDUCERS = ("reduce_parts", "reduce_refine", "reduce_coarse")
+"""Stages that choose among the cases, the one that has the last word first."""
 
 
 class CaseStatus(StrEnum):
@@ -50,7 +56,7 @@ class CaseRow:
     name: str
     """Name of the case: its segment, first and last frame."""
     kind: CaseKind
-    """`coarse` or `refine`."""
+    """`coarse`, `refine` or `part`."""
     start: int
     """First frame of its window."""
     end: int

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from core.json_files import JsonObject
@@ -120,6 +121,15 @@ class Confidence:
     value: float
     parts: JsonObject
     """By name; medians over its observations."""
+
+
+def least_defects(models: Iterable[int]) -> int:
+    """Defects that there are at least, given the model of every record.
+
+    Nothing says how two models lie to each other, so one defect may have a record in each: only those of one model are
+    told apart.
+    """
+    return max(Counter(models).values(), default=0)
 
 
 _ONLY_BY_CASTING = ("centroid_sigma", "normal", "approximate_detections", "evidence")

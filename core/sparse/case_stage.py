@@ -18,7 +18,7 @@ from core.viewgraph import read_graph
 def run_case_task(task: StageTask, kind: CaseKind) -> StageResult:
     """Map the window of a task; no model is an outcome, not an error."""
     case = Case(
-        task.input("graph"),
+        task.input("prune", "graph"),
         int(task.args["start"]),
         int(task.args["end"]),
         task.settings.mapper,

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from core.errors import NoReconstruction, StageFailed
-from core.flags import FlagFields, error_codes
+from core.flags import Flag, FlagFields, Severity, error_codes
 from core.json_files import JsonObject
 from core.scene.case import CaseKind, CaseRow
 from core.task_key import parts_of
@@ -63,19 +63,42 @@ def reduce_cases(candidates: Sequence[Candidate], veto: bool = True) -> JsonObje
 def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], veto: bool = True) -> JsonObject:
     """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
 
-    Verified detections are counted for all of them or for none.
-    Raises `NoReconstruction` when the winner is vetoed, which with `veto` means that every candidate is.
+    Verified detections are counted for all of them or for none. `vetoed` says that the winner is, which with `veto`
+    means that every candidate is; `codes` are then those of the findings.
     """
     ranking = rank(refined, veto)
     better = ranking and standing(ranking[0], veto) > standing(coarse_best, veto)
     winner = ranking[0] if better else coarse_best
     others = [candidate for candidate in (*ranking, coarse_best) if candidate.name != winner.name]
-    if not standing(winner, veto)[0]:
-        codes = error_codes(winner.checks)
+    ranked = [winner, *sorted(others, key=lambda candidate: standing(candidate, veto), reverse=True)]
+    return {
+        **_facts(winner, ranked),
+        "vetoed": not standing(winner, veto)[0],
+        "codes": error_codes(winner.checks),
+    }
+
+
+def reduce_parts(vetoed: JsonObject, parts: Sequence[Candidate]) -> JsonObject:
+    """Facts over the parts of a vetoed model: the one that verifies most detections wins, of equals the largest.
+
+    Args:
+        vetoed: facts of `reduce_refined`.
+        parts: cases of kind `part`, with verified detections or all without.
+
+    Raises:
+        NoReconstruction: no part has a model that the checks let pass.
+    """
+    ranking = rank(parts)
+    if not ranking or ranking[0].row.vetoed:
+        passed = f"; none of its {len(parts)} parts passes them" if parts else ""
         raise NoReconstruction(
-            f"every model was vetoed by the checks; the largest, {winner.name}: {codes}", where="search"
+            f"every model was vetoed by the checks; the largest, {vetoed['best']}: {vetoed['codes']}{passed}",
+            where="search",
         )
-    return _facts(winner, [winner, *sorted(others, key=lambda candidate: standing(candidate, veto), reverse=True)])
+    row = ranking[0].row
+    where = f"frames {row.start}-{row.end - 1} of {vetoed['best']}, vetoed for {vetoed['codes']}"
+    flag = Flag("parts_after_veto", Severity.WARNING, where=where)
+    return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
 
 
 def candidates_of(facts: Mapping[str, JsonObject], kind: CaseKind) -> list[Candidate]:

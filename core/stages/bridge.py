@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from core.features.io import feature_files, read_features
 from core.flags import Flag, Severity
 from core.io.frames import read_frames
-from core.matching.bridges import PROBES, Pair, agreeing, bridge_pairs, components_of, find_gaps, is_strong, select
+from core.matching.bridges import Pair, agreeing, bridge_places, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
 from core.stage import StageResult, StageTask
 from core.verification import read_camera
@@ -31,16 +33,20 @@ def run(task: StageTask) -> StageResult:
 
     gaps = find_gaps(table, n_search)
 
-    def tried(pairs: list[Pair]) -> PairTable:
+    def tried(pairs: Sequence[Pair]) -> PairTable:
         found = _matched(task, pairs)
         usual = density * ~dropped
         return select(found, dense_enough(found, match_density(found, keypoints, *size), table, usual, position))
 
-    places = bridge_pairs(table, n_search)
-    probes = [tried(place[:PROBES]) for place in places]
-    rest = [tried(place[PROBES:]) for place, probe in zip(places, probes, strict=True) if is_strong(probe).any()]
-    extra = join_tables([*probes, *rest])
-    extra = select(extra, agreeing(table, extra, len(frames)))
+    places = bridge_places(table, n_search)
+    probed = [tried(place.pairs[: place.probes]) for place in places]
+    rest = [
+        tried(place.pairs[place.probes :])
+        for place, probe in zip(places, probed, strict=True)
+        if len(place.pairs) > place.probes and is_strong(probe).any()
+    ]
+    extra = join_tables([*probed, *rest])
+    extra = select(extra, agreeing(table, extra, len(frames), n_search))
     write_pairs(task.out, extra)
     spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())
     pieces = components_of(join_tables([table, extra]), len(frames))
@@ -58,7 +64,7 @@ def run(task: StageTask) -> StageResult:
     )
 
 
-def _matched(task: StageTask, pairs: list[Pair]) -> PairTable:
+def _matched(task: StageTask, pairs: Sequence[Pair]) -> PairTable:
     # Most videos have no gap, and the matchers are slow to load.
     import torch
 

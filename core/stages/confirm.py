@@ -27,13 +27,18 @@ def run(task: StageTask) -> StageResult:
 
     A warm model inherits what was wrong with the one that it started from; one from scratch has nothing to confirm.
     """
-    winner = task.facts["reduce_refine"]
+    reducer = "reduce_parts" if task.has("reduce_parts") else "reduce_refine"
+    winner = task.facts[reducer]
     from_scratch = winner["start_mode"] == StartMode.SCRATCH
-    model, kept = read_model(task.input("reduce_refine")), "searched"
+    model, kept = read_model(task.input(reducer)), "searched"
     if task.settings.model.confirm and not from_scratch:
         # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
         case = Case(
-            task.input("graph"), int(winner["start"]), int(winner["end"]), task.settings.mapper, task.settings.seed
+            task.input("prune", "graph"),
+            int(winner["start"]),
+            int(winner["end"]),
+            task.settings.mapper,
+            task.settings.seed,
         )
         model, kept = confirmed_or_searched(
             case,

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 def run(task: StageTask) -> StageResult:
     """Write the final model, the list of its frames and what speaks against it."""
-    graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
+    graph, n_frames = task.input("prune", "graph"), int(task.facts["frames"]["n_frames"])
     n_search = int(task.facts["frames"]["n_search"])
     settings = task.settings.model
     model = read_model(task.input("pieces" if task.piece else "confirm"), task.piece)
@@ -83,7 +83,7 @@ def _adjust(task: StageTask, model: pycolmap.Reconstruction) -> Adjustment:
     names = {model.image(image_id).name for image_id in model.reg_image_ids()}
     return adjust(
         model,
-        open_cache(database_of(task.input("graph")), names, MIN_MATCHES),
+        open_cache(database_of(task.input("prune", "graph")), names, MIN_MATCHES),
         mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
         align=_aligner(task) if task.settings.model.align_keypoints else None,

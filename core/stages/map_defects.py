@@ -46,7 +46,7 @@ def _placing(task: StageTask) -> Placing:
         return _by_support(task)
     task.report(0, 4, "opening the surface")
     scene, frames = open_scene_of(task)
-    matches = matches_of_graph(task.input("graph"), scene.views)
+    matches = matches_of_graph(task.input("prune", "graph"), scene.views)
     return SurfacePlacing(scene, frames, matches, task.settings.mapping.time_tolerance_s, task.report)
 
 

@@ -11,7 +11,7 @@ from core.viewgraph import read_graph
 
 def run(task: StageTask) -> StageResult:
     """Write ``N/model`` for N = 1, 2, ...: strong models of frames that no earlier one has."""
-    graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
+    graph, n_frames = task.input("prune", "graph"), int(task.facts["frames"]["n_frames"])
     table = read_graph(graph)
     first = read_model(task.input("extend"))
     taken = {int(image_id) - 1 for image_id in first.reg_image_ids()}

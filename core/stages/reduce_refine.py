@@ -1,47 +1,20 @@
-"""Stage `reduce_refine`: the final choice; a refined case replaces the best coarse one only if strictly better."""
+"""Stage `reduce_refine`: the choice; a refined case replaces the best coarse one only if strictly better."""
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Sequence
-from dataclasses import replace
-
-from core.io.annotations import read_detections
-from core.io.frames import read_crop, read_frames
-from core.io.sparse import model_folder, read_model
-from core.mapping.support import boxes_by_frame, verified_detections
 from core.scene.case import CaseKind
-from core.sparse.reduce import Candidate, candidates_of, find_candidate, reduce_refined
+from core.sparse.reduce import candidates_of, find_candidate, reduce_refined
 from core.stage import StageResult, StageTask
-from core.task_key import key_of
+from core.stages.choice import keep_winner, with_verified
 
 
 def run(task: StageTask) -> StageResult:
-    """Rank the refined cases against the best coarse one and keep the winner's model.
-
-    The winner is known only here, so its model is copied: later stages need no case by name.
-    """
+    """Rank the refined cases against the best coarse one and keep the winner's model."""
     best = find_candidate(candidates_of(task.facts, CaseKind.COARSE), str(task.facts["reduce_coarse"]["best"]))
     cases = [best, *candidates_of(task.facts, CaseKind.REFINE)]
     if task.settings.model.prefer_verified:
-        cases = _with_verified(task, cases)
+        cases = with_verified(task, cases)
     facts = reduce_refined(cases[0], cases[1:], task.settings.model.veto)
-    winner = task.input(key_of(str(facts["kind"]), part=str(facts["best"])))
-    shutil.copytree(model_folder(winner), model_folder(task.out))
+    keep_winner(task, facts)
     task.report(1, 1, f"{len(cases) - 1} refined cases ranked")
     return StageResult(facts)
-
-
-def _with_verified(task: StageTask, cases: Sequence[Candidate]) -> list[Candidate]:
-    """The cases with the detections that each one's model verifies; none without a model."""
-    frames = task.input("frames")
-    detections = read_detections(task.input("annotations"))
-    boxes = boxes_by_frame(detections, (), read_frames(frames).index_of_source, read_crop(frames))
-    found: list[Candidate] = []
-    for number, case in enumerate(cases):
-        task.report(number, len(cases), f"detections of {case.name}")
-        count = 0
-        if case.row.succeeded:
-            count = verified_detections(read_model(task.input(key_of(case.row.kind, part=case.name))), boxes)
-        found.append(replace(case, verified=count))
-    return found

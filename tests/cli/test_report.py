@@ -30,6 +30,11 @@ def test_report_says_what_was_made(tmp_path: Path) -> None:
     assert "fused points" not in text
     assert "detections 90 -> frame found 88 -> mapped 70 (and 5 approximate)" in text
     assert "verdict: suspect" in text
+    for least, says in ((7, "-> defects 7 to 9"), (9, "-> defects 9")):
+        quality["funnel"] = {"mapped": 70, "defects": 9, "defects_at_least": least}
+        (tmp_path / "quality.json").write_text(json.dumps(quality))
+        lines = report.lines(Outcome(RunState.SUCCEEDED, tmp_path, 75.0, 12, 3))
+        assert any(line.endswith(says) for line in lines)
     assert "warning few_points: 12, threshold 50: m" in text
     assert "error bent_model (model 0): n" in text
     assert str(tmp_path / "mapping" / "detections.csv") in text

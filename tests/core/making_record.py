@@ -17,7 +17,7 @@ from tests.core.making_rows import mapped, unplaced
 
 
 def case(name: str, images: int, points: int, seconds: float = 2.0) -> TaskRecord:
-    kind = "refine" if name.startswith("refine") else "coarse"
+    kind = {"seg": "coarse"}.get(name.split("_")[0], name.split("_")[0])
     start, end = (int(part) for part in name.split("_")[-2:])
     facts: dict[str, Any] = {
         "name": name,

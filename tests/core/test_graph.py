@@ -17,7 +17,11 @@ from core.task_key import stage_of
 
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
 SEARCHED: dict[str, Facts] = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
-DENSE: dict[str, Facts] = {**SEARCHED, "undistort": {"n_views": 90}}
+CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": False}}
+VETOED: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": True}}
+PRUNED: dict[str, Facts] = {**VETOED, "prune": {"parts": [[0, 61], [61, 200]]}}
+DENSE: dict[str, Facts] = {**CHOSEN, "undistort": {"n_views": 90}}
+AFTER_VETO: dict[str, Facts] = {**PRUNED, "undistort": {"n_views": 90}, "pieces": {"n_pieces": 1}}
 
 
 def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, Any] | None = None) -> list[str]:
@@ -30,7 +34,9 @@ def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, A
     return names
 
 
-@pytest.mark.parametrize("facts", [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 2}}])
+@pytest.mark.parametrize(
+    "facts", [{}, FRAMES, SEARCHED, CHOSEN, VETOED, PRUNED, AFTER_VETO, DENSE, {**DENSE, "pieces": {"n_pieces": 2}}]
+)
 @pytest.mark.parametrize("preset", ["default", "draft", "thesis"])
 def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: str) -> None:
     if "reduce_coarse" in facts and preset == "draft":  # its one window is the whole clip
@@ -52,9 +58,28 @@ def test_chunks_cover_every_frame_and_view_once() -> None:
 
 
 def test_the_plan_only_grows() -> None:
-    known: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
-    for before, after in pairwise(known):
-        assert set(keys(before)) <= set(keys(after))
+    good: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, CHOSEN, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
+    for known in (good, [SEARCHED, VETOED, PRUNED, AFTER_VETO]):
+        for before, after in pairwise(known):
+            assert set(keys(before)) <= set(keys(after))
+            earlier, later = (
+                {task.key: task.depends for task in expand(make_settings(), facts)} for facts in (before, after)
+            )
+            assert all(later[key] == depends for key, depends in earlier.items())
+
+
+def test_after_a_veto_every_part_is_a_case_and_all_that_follows_reads_the_pruned_graph() -> None:
+    assert "prune" not in keys(DENSE)
+    assert keys(VETOED)[-1] == "prune"
+    tasks = {task.key: task for task in expand(make_settings(), AFTER_VETO)}
+    names = ["part_000_0000_0061", "part_001_0061_0200"]
+    assert dict(tasks[f"part/{names[1]}"].args) == {"name": names[1], "start": 61, "end": 200, "warm_from": ""}
+    assert {f"part/{name}" for name in names} <= set(tasks["reduce_parts"].depends)
+    assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")
+    readers = ("extend", "pieces", "map_defects", "extend@1", "map_defects@1")
+    assert all("prune" in tasks[key].depends and "graph" not in tasks[key].depends for key in readers)
+    nothing = {**VETOED, "prune": {"parts": []}}
+    assert "reduce_parts" in keys(nothing)  # which then says that there is no reconstruction
 
 
 def test_the_gallery_waits_until_the_further_models_are_known() -> None:

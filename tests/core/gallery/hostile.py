@@ -32,6 +32,7 @@ def hostile_page() -> str:
         DefectLine(
             number=n,
             label=label,
+            model=0,
             size=0.5 if n else None,
             size_sigma=0.0625 if n > 1 else None,
             unit="model",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -130,6 +131,15 @@ def test_an_inspection_without_detections_has_a_page() -> None:
     html = gallery_page([], 0, [], [], {})
     assert "No defect was placed on the surface." in html
     assert "no detection inside the video" in html
+
+
+@pytest.mark.parametrize(("models", "says"), [((0, 0, 0), ", 3 defects"), ((0, 1, 1), ", 2 to 3 defects")])
+def test_defects_of_several_models_are_a_range(models: tuple[int, ...], says: str) -> None:
+    used = run_frames(3, 1.0)
+    lines = defect_lines([replace(record(n, "dent"), model=model) for n, model in enumerate(models)], [], used)
+    html = gallery_page([], 0, [], lines, {})
+    assert f"{says}</p>" in html
+    assert ("counted twice" in html) == (len(set(models)) > 1)
 
 
 def test_the_page_says_what_it_said_when_it_was_written_by_hand() -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from core.matching.bridges import (
+    MAX_PAIRS,
     PIECE_FRAMES,
     SIDE,
     agreeing,
-    bridge_pairs,
+    bridge_places,
     components_of,
+    facing,
     find_gaps,
     select,
 )
@@ -43,10 +47,10 @@ def table(pairs: list[tuple[int, int]], inliers: list[int], error_deg: list[floa
 
 
 def sought(base: PairTable, n_search: int) -> list[tuple[int, int]]:
-    places = bridge_pairs(base, n_search)
-    pairs = [pair for place in places for pair in place]
+    places = bridge_places(base, n_search)
+    pairs = [pair for place in places for pair in place.pairs]
     assert len(set(pairs)) == len(pairs)
-    assert all(place for place in places)
+    assert all(place.pairs for place in places)
     return pairs
 
 
@@ -101,18 +105,57 @@ def test_pairs_that_agree_are_believed_and_the_odd_one_is_not(reverse: bool) -> 
     if reverse:  # the odd ones are most: nothing can be believed
         errors = [0.0, 20.0, -20.0, 40.0, 30.0]
     extra = table(wanted, [60] * 5, errors)
-    assert agreeing(base, extra, N).tolist() == ([False] * 5 if reverse else [True] * 4 + [False])
+    assert agreeing(base, extra, N, N).tolist() == ([False] * 5 if reverse else [True] * 4 + [False])
 
 
-def test_two_pairs_are_too_few_and_weak_ones_do_not_count() -> None:
+@pytest.mark.parametrize(
+    ("off_deg", "n_search", "believed"),
+    [(0.0, N, True), (20.0, N, False), (0.0, 30, False)],
+    ids=["as the motion foretells", "against it", "the motion after the gap is not known"],
+)
+def test_the_motion_before_and_after_stands_for_a_third_pair(off_deg: float, n_search: int, believed: bool) -> None:
     base = sequence(range(18, 25))
-    extra = table([(17, 25), (16, 26), (15, 27)], [60, 60, 20])
-    assert not agreeing(base, extra, N).any()
+    extra = table([(17, 25), (16, 26), (15, 27)], [60, 60, 20], [off_deg, off_deg, 0.0])
+    assert agreeing(base, extra, N, n_search).tolist() == [believed, believed, False]
+    assert not agreeing(base, table([(17, 25)], [60]), N, n_search).any()
+
+
+def test_a_motion_that_changes_over_the_gap_foretells_nothing() -> None:
+    base = sequence(range(18, 25))
+    later = (base.pairs >= 25).all(axis=1)  # from the gap on the view turns the other way
+    turned = base.rotation_xyzw.copy()
+    turned[later, :3] *= -1.0
+    extra = table([(17, 25), (16, 26)], [60, 60])
+    assert not agreeing(replace(base, rotation_xyzw=turned), extra, N, N).any()
+
+
+def test_light_faces_light_over_a_dark_stretch_that_hangs_together_by_itself() -> None:
+    dark = range(16, 24)
+    pairs = sequential_pairs(N, WINDOW)
+    base = table(pairs, [200 if (a in dark) == (b in dark) else 0 for a, b in pairs])
+    places = bridge_places(base, N)
+    assert [len(np.unique(components_of(base, N))), len(places[0].pairs), places[0].probes] == [
+        3,
+        SIDE * SIDE,
+        MAX_PAIRS,
+    ]
+    assert places[0].pairs[0] == (15, 24)
+    assert all(a <= 15 and b >= 24 for a, b in places[0].pairs)
+    assert any(a in dark or b in dark for place in places[1:] for a, b in place.pairs)
+
+
+def test_no_piece_is_looked_over_by_a_smaller_one() -> None:
+    sizes = [9, 3, 20, 5, 9]
+    starts = np.cumsum([0, *sizes])
+    pieces = [np.arange(start, start + size) for start, size in zip(starts, sizes, strict=False)]
+    found = [(int(a[0]), int(b[0])) for a, b in facing(pieces)]
+    of = {int(starts[row]): row for row in range(5)}
+    assert [(of[a], of[b]) for a, b in found] == [(0, 2), (2, 4), (2, 3), (3, 4), (0, 1), (1, 2)]
 
 
 def test_within_one_piece_strong_pairs_are_believed() -> None:
     extra = table([(3, 12), (4, 14)], [40, 10])
-    assert agreeing(sequence(), extra, N).tolist() == [True, False]
+    assert agreeing(sequence(), extra, N, N).tolist() == [True, False]
 
 
 def test_what_is_not_believed_stays_as_tried_in_vain() -> None:

@@ -6,11 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from core.flags import Verdict
 from core.io.annotations import write_rows
 from core.io.frames import write_registered
 from core.io.timeline import write_timeline
+from core.report.build import build_report
 from core.report.load import join_detections, load_tables, served_pieces
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
@@ -19,7 +21,7 @@ from core.scene.defect import EventRow
 from core.scene.detection import DetectionRow, Outcome
 from core.states import TaskState
 from core.timeline.grouping import Start
-from tests.core.making_record import full_record
+from tests.core.making_record import case, full_record
 from tests.core.making_rows import defect, mapped, unplaced
 
 
@@ -101,3 +103,41 @@ def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
     assert "model 1, frame 4" in [flag.where for flag in flags]
     quality = build_quality(record, Verdict.OK, flags, case_rows(record), detection_rows(record, False))
     assert [(one["model"], one["registered_images"]) for one in quality["models"]][-1] == (1, 12)
+
+
+@pytest.mark.parametrize(
+    ("of_rows", "of_defects", "where", "least"),
+    [
+        ((0, 0), (0, 0, 0), None, 3),
+        ((0, 1), (0, 0, 1), "models 0, 1", 2),
+        ((0, 0), (0, 2, 2), "models 0, 2", 2),  # a defect without a row of its own: its detections count for model 0
+        ((0, None), (0, 0), None, 2),
+    ],
+)
+def test_with_defects_in_several_models_the_count_is_a_range_and_the_verdict_not_ok(
+    of_rows: tuple[int | None, ...], of_defects: tuple[int, ...], where: str | None, least: int
+) -> None:
+    record = full_record()
+    rows = [row(n, "unplaced" if model is None else "mapped", model) for n, model in enumerate(of_rows)]
+    defects = [replace(defect(n), model=model) for n, model in enumerate(of_defects)]
+    record = replace(record, tables=replace(record.tables, mapped_rows=rows, defects=defects))
+    report = build_report(record)
+    flags = {flag["code"]: flag["where"] for flag in report.quality["flags"]}
+    assert flags == ({} if where is None else {"several_models": where})
+    assert report.verdict == (Verdict.OK if where is None else Verdict.SUSPECT)
+    for numbers in (report.summary["headline"], report.quality["funnel"]):
+        assert (numbers["defects_at_least"], numbers["defects"]) == (least, len(defects))
+
+
+def test_the_part_of_a_vetoed_model_is_the_selected_case() -> None:
+    record = full_record()
+    flag = {"code": "parts_after_veto", "severity": "warning", "where": "frames 0-29 of seg_006_0120_0300"}
+    part = case("part_000_0000_0030", 30, 900)
+    reducer = TaskRecord(
+        "reduce_parts", TaskState.SUCCEEDED, facts={"best": "part_000_0000_0030", "kind": "part", "flags": [flag]}
+    )
+    report = build_report(replace(record, tasks=[*record.tasks, part, reducer]))
+    assert report.verdict == Verdict.SUSPECT
+    assert [flag["code"] for flag in report.quality["flags"]] == ["parts_after_veto"]
+    assert [(row["name"], row["kind"]) for row in report.cases if row["selected"]] == [("part_000_0000_0030", "part")]
+    assert report.quality["search"]["parts"]["registered_images_max"] == 30

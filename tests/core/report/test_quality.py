@@ -28,6 +28,7 @@ def test_funnel() -> None:
         "approximate": 0,
         "unconfirmed": 0,
         "defects": 2,
+        "defects_at_least": 2,
     }
     by_support = build_report(full_record("thesis")).quality["funnel"]
     assert by_support["surface_hit"] is by_support["verified"] is None

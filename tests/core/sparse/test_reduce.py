@@ -14,7 +14,7 @@ from core.scene.frame import Crop, SourceFrame
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case
-from core.sparse.reduce import Candidate, candidates_of, reduce_cases, reduce_refined
+from core.sparse.reduce import Candidate, candidates_of, reduce_cases, reduce_parts, reduce_refined
 from core.stage import StageTask
 from core.stages import reduce_coarse, reduce_refine
 from tests.core.making_rows import detection, run_frames
@@ -123,11 +123,28 @@ def test_a_vetoed_case_loses_against_any_other() -> None:
     assert reduce_refined(rows[1], [case("refine_000", 220, 9, **BENT)])["best"] == "seg_001"
 
 
-def test_when_every_case_is_vetoed_there_is_no_reconstruction() -> None:
+def test_when_every_case_is_vetoed_the_parts_have_their_turn() -> None:
     best = case("seg_000", 180, 9, **BENT)
     assert reduce_cases([best])["best"] == "seg_000"  # refinement still gets its chance
-    with pytest.raises(NoReconstruction, match="seg_000: bent_model"):
-        reduce_refined(best, [case("refine_000", 170, 9, **BENT)])
+    refined = reduce_refined(best, [case("refine_000", 170, 9, **BENT)])
+    assert (refined["best"], refined["vetoed"], refined["codes"]) == ("seg_000", True, "bent_model")
+    assert not reduce_refined(case("seg_000", 180, 9), [])["vetoed"]
+    parts = [case("part_000", 60, 9, verified=1), case("part_001", 20, 9, verified=3), case("part_002", 90, 9, **BENT)]
+    facts = reduce_parts(refined, parts)
+    assert [item["name"] for item in facts["ranking"]] == ["part_001", "part_000", "part_002"]
+    (flag,) = facts["flags"]
+    assert (flag["code"], flag["severity"]) == ("parts_after_veto", "warning")
+    assert "seg_000, vetoed for bent_model" in flag["where"]
+    assert reduce_parts(refined, [replace(part, verified=2) for part in parts])["best"] == "part_000"
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [([], "seg_000: bent_model$"), ([case("part_000", 20, 9, **BENT), case("part_001", 0, 0)], "none of its 2 parts")],
+)
+def test_without_a_part_that_passes_there_is_no_reconstruction(parts: list[Candidate], says: str) -> None:
+    with pytest.raises(NoReconstruction, match=says):
+        reduce_parts(reduce_refined(case("seg_000", 180, 9, **BENT), []), parts)
 
 
 def test_without_the_veto_the_score_alone_counts() -> None:

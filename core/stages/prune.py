@@ -1,0 +1,34 @@
+"""Stage `prune`: the view graph without what a vetoed model and triplets speak against, and the parts left of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.checks.parts import prune
+from core.io.frames import read_frames
+from core.io.sparse import read_model
+from core.matching.jumps import positions
+from core.sparse import view_graph
+from core.stage import StageResult, StageTask
+from core.viewgraph import database_of, graph_facts, read_graph, write_database, write_graph
+
+
+def run(task: StageTask) -> StageResult:
+    """Write ``graph.npz`` and ``database.db`` as stage `graph` does; what follows after a veto reads these."""
+    frames = read_frames(task.input("frames"))
+    graph = task.input("graph")
+    position = positions(frames.times_s, frames.n_search)
+    found = prune(read_graph(graph), read_model(task.input("reduce_refine")), position, frames.n_search)
+    write_graph(task.out, found.table)
+    known = view_graph.read_frames(database_of(graph), 0, len(frames))
+    keypoints = (xy.astype(np.float32) for xy in known.keypoints)
+    write_database(database_of(task.out), known.camera, keypoints, found.table)
+    task.report(1, 1, f"{len(found.parts)} parts")
+    return StageResult(
+        {
+            **graph_facts(found.table, len(frames)),
+            "doubted": found.doubted,
+            "cuts": [[cut, cut + 1] for cut in found.cuts],
+            "parts": [list(part) for part in found.parts],
+        }
+    )

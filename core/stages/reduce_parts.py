@@ -1,0 +1,19 @@
+"""Stage `reduce_parts`: after a veto of every case, the part that the inspection goes on with."""
+
+from __future__ import annotations
+
+from core.scene.case import CaseKind
+from core.sparse.reduce import candidates_of, reduce_parts
+from core.stage import StageResult, StageTask
+from core.stages.choice import keep_winner, with_verified
+
+
+def run(task: StageTask) -> StageResult:
+    """Rank the parts and keep the winner's model; `NoReconstruction` when the checks let none pass."""
+    parts = candidates_of(task.facts, CaseKind.PART)
+    if task.settings.model.prefer_verified:
+        parts = with_verified(task, parts)
+    facts = reduce_parts(task.facts["reduce_refine"], parts)
+    keep_winner(task, facts)
+    task.report(1, 1, f"{len(parts)} parts ranked")
+    return StageResult(facts)

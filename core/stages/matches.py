@@ -10,6 +10,7 @@ from core.features.io import FrameFeatures, feature_files, read_features
 from core.io.frames import read_frames
 from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher, Patience
+from core.matching.keyframes import keyframe_pairs, read_keyframes
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
 from core.verification import Verifier, read_camera
@@ -57,4 +58,7 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
 
 def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
     frames = read_frames(task.input("frames"))
-    return match_pairs(frames.times_s, frames.n_search, task.settings.matching.window)
+    near = match_pairs(frames.times_s, frames.n_search, task.settings.matching.window)
+    if not task.has("motion"):
+        return near
+    return sorted({*near, *keyframe_pairs(read_keyframes(task.input("motion")).frames)})

@@ -67,9 +67,14 @@ class SpanFocal:
     mean_reprojection_error_px: float
 
     @property
-    def holds(self) -> bool:
-        """Whether enough of the span maps, with a lens that has not run away."""
-        return self.registered_images >= ENOUGH_SHARE * self.frames and abs(self.k1) < MAX_K1
+    def is_lens(self) -> bool:
+        """Whether the radial term is one that a lens may have."""
+        return abs(self.k1) < MAX_K1
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether enough of the span maps."""
+        return self.registered_images >= ENOUGH_SHARE * self.frames
 
 
 def choose_spans(keyframes: Sequence[int], length: int, count: int, load: Load) -> list[tuple[int, ...]]:
@@ -95,7 +100,8 @@ def find_focal(
 ) -> SpanFocal:
     """Map one span from `camera` (of the model `core.sparse.lens.ESTIMATE_MODEL`) and refine its focal length and k1.
 
-    A span that does not map well is mapped again with wider pairs, and what maps more of it counts.
+    A span that comes apart, or whose lens runs away, is mapped again with wider pairs too. What maps more of it counts,
+    a lens that has not run away before one that has.
 
     Args:
         span: its keyframes, rising.
@@ -106,10 +112,10 @@ def find_focal(
     """
     searched = _Span(span, camera, settings, load, report)
     found = searched.map(GAPS)
-    if found.holds or len(span) <= WIDER_GAPS[0]:
+    if (found.is_whole and found.is_lens) or len(span) <= WIDER_GAPS[0]:
         return found
     wider = searched.map(GAPS + WIDER_GAPS)
-    return max(found, wider, key=lambda one: (one.holds, one.registered_images))
+    return max(found, wider, key=lambda one: (one.is_lens, one.registered_images))
 
 
 class _Span:

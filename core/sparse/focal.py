@@ -148,7 +148,8 @@ class _Span:
         mapper = settings.mapper.model_copy(update={"refine_distortion": True})
         options = mapper_options(mapper, threads=1, seed=settings.seed, tuned=True)
         options.multiple_models = False
-        models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
+        # COLMAP's own search of a first pair would try every one, at many times the cost, where wider pairs help more.
+        models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked], search=False)
         model = best_model(models)
         if model is None:
             return nothing

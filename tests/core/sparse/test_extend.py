@@ -105,7 +105,11 @@ def run_stages(
     ).facts
     spans = [{"focal_px": said_px, "registered_images": 14, "points3D": 900}]
     camera = {"chosen_start_deg": 85.0, "starts": [{"fov_deg": 85.0, "spans": spans}]}
-    facts = {"frames": {"n_frames": N_FRAMES, "n_search": N_FRAMES}, "camera": camera, "confirm": confirmed}
+    facts: dict[str, Facts] = {
+        "frames": {"n_frames": N_FRAMES, "n_search": N_FRAMES},
+        "camera": camera,
+        "confirm": confirmed,
+    }
     return confirmed, extend_stage.run(task("extend", {"graph": graph, "confirm": out / "confirm"}, facts)).facts
 
 

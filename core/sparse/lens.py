@@ -30,9 +30,9 @@ MIN_AGREEMENT = 0.5
 FOV_RANGE_DEG = (10.0, 240.0)
 """A focal length that gives another horizontal field of view is no lens."""
 
-MAX_K1 = 0.9
+MAX_K1 = 1.0
 """A radial term as large as this has run away with the focal length: 0.33 makes the equidistant lens rectilinear, and
-COLMAP drops images at 1."""
+COLMAP's mapper drops images at 1 (`max_extra_param`)."""
 
 SOLE_FOV_RANGE_DEG = (30.0, 180.0)
 """Of a start that no other agrees with: another field of view has more likely run away than been found."""

@@ -104,7 +104,7 @@ def test_a_lens_that_ran_away_and_nobody_agrees_on_is_not_used() -> None:
 
 def test_a_start_whose_radial_term_ran_away_gives_way_to_one_that_maps_less() -> None:
     starts = [
-        {**start(40.0, 7000.0), "k1": -0.97},
+        {**start(40.0, 7000.0), "k1": -1.05},
         {**start(55.0, 700.0), "k1": 5.0},
         start(70.0, 520.0, registered=20),
     ]

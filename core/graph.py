@@ -75,6 +75,7 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
         _spec("features", "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
+        _spec("motion", weight=0.4),
         _spec(
             "focal",
             *_options("camera", "principal_point", "focal_span", "focal_spans"),
@@ -83,13 +84,13 @@ STAGES: dict[str, StageSpec] = {
             "matching.ratio",
             "verification",
             "seed",
-            version=2,
+            version=3,
             fan_out=True,
             weight=7,
         ),
-        _spec("camera", *_options("camera", "fov_deg", "focal", "principal_point"), weight=0.1),
+        _spec("camera", *_options("camera", "fov_deg", "focal", "principal_point"), version=2, weight=0.1),
         _spec(
-            "matches", *_MATCHER, "matching.window", version=2, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
+            "matches", *_MATCHER, "matching.window", version=3, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
         _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),
@@ -108,7 +109,7 @@ STAGES: dict[str, StageSpec] = {
             *_options("model", "trim_tracks", "radial_terms", "loss_scale_px", "refine_principal_point"),
             "seed",
             "compute.threads",
-            version=12,
+            version=13,
             weight=18,
         ),
         _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
@@ -199,7 +200,7 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
 
 
 def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
-    """Features, camera, matches and the verified view graph."""
+    """Features, keyframes, camera, matches and the verified view graph."""
     step = settings.compute.chunk_frames
     chunks = [(start, min(start + step, n_frames)) for start in range(0, n_frames, step)]
     # Other annotations of the same video need no new features, unless these keep to the annotated blades.
@@ -207,17 +208,26 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     features = [TaskSpec(chunk_key("features", i), needs, {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
     feature_keys = tuple(task.key for task in features)
     tasks = list(features)
+    motion_keys: tuple[str, ...] = ()
+    if settings.matching.keyframes:
+        tasks.append(TaskSpec("motion", ("frames", *feature_keys)))
+        motion_keys = ("motion",)
     focal_keys: tuple[str, ...] = ()
     if settings.camera.fov_deg is None and settings.camera.focal == "estimate":
         focal = [
-            TaskSpec(key_of("focal", part=f"{fov:05.1f}"), ("frames", *feature_keys), {"fov_deg": fov}, optional=True)
+            TaskSpec(
+                key_of("focal", part=f"{fov:05.1f}"),
+                ("frames", *feature_keys, *motion_keys),
+                {"fov_deg": fov},
+                optional=True,
+            )
             for fov in settings.camera.fov_starts_deg
         ]
         tasks += focal
         focal_keys = tuple(task.key for task in focal)
     tasks.append(TaskSpec("camera", ("frames", *focal_keys)))
     matches = [
-        TaskSpec(chunk_key("matches", i), ("frames", "camera", *feature_keys), {"start": a, "end": b})
+        TaskSpec(chunk_key("matches", i), ("frames", "camera", *feature_keys, *motion_keys), {"start": a, "end": b})
         for i, (a, b) in enumerate(chunks)
     ]
     tasks += matches
@@ -248,7 +258,7 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
             return tasks
         tasks += _parts(facts["prune"]["parts"])
     tasks.append(TaskSpec("confirm", ("frames", graph, reducer)))
-    tasks.append(TaskSpec("extend", ("frames", graph, "confirm")))
+    tasks.append(TaskSpec("extend", ("frames", "camera", graph, "confirm")))
     if settings.model.further:
         tasks.append(TaskSpec("pieces", ("frames", graph, "extend")))
     tasks.append(TaskSpec("undistort", ("frames", "extend")))
@@ -302,7 +312,7 @@ def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec
     one = {"piece": piece}
     surface = (key("extend"), key("fuse"), key("mesh"))
     return [
-        TaskSpec(key("extend"), ("frames", graph, "pieces"), one, optional=True),
+        TaskSpec(key("extend"), ("frames", "camera", graph, "pieces"), one, optional=True),
         TaskSpec(key("undistort"), ("frames", "pieces", key("extend")), one, optional=True),
         TaskSpec(depth, (key("undistort"),), whole, optional=True),
         TaskSpec(geometric, (key("undistort"), depth), whole, optional=True),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +14,10 @@ MIN_FOV_DEG = 15.0
 MAX_FOV_DEG = 200.0
 MAX_SHIFT = 0.06
 """A focal length that the last choice of tracks still moves by more than this share may have further to go."""
+MAX_LEFT = 0.15
+"""A focal length farther than this share from what a part of the clip said when it was sought follows from neither."""
+MAX_ASPECT = 1.03
+"""Pixels are square: a larger ratio of the two focal lengths (or its inverse) comes from a model that is bent."""
 
 
 def check_shift(shift: float) -> Flag | None:
@@ -25,6 +31,19 @@ def check_shift(shift: float) -> Flag | None:
     return Flag("lens_unsettled", Severity.WARNING, abs(shift), MAX_SHIFT, "relative change of the focal length")
 
 
+def check_left(focal_px: float, said_px: Sequence[float]) -> Flag | None:
+    """`lens_unsettled` when the final focal length is more than 15 % off what a part of the clip said.
+
+    Args:
+        focal_px: of the final model.
+        said_px: focal lengths that the search for the lens found, of each of its spans; none where it was told.
+    """
+    left = max((abs(focal_px / said - 1.0) for said in said_px), default=0.0)
+    if left <= MAX_LEFT:
+        return None
+    return Flag("lens_unsettled", Severity.WARNING, left, MAX_LEFT, "focal length against what spans of the clip said")
+
+
 def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Flag]:
     """Flags of an OPENCV_FISHEYE camera.
 
@@ -35,7 +54,8 @@ def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Fla
 
     Returns:
         `distortion_implausible` when the image's farthest corner lies beyond the fold;
-        `focal_implausible` when the field of view across the width is outside 15-200 degrees.
+        `focal_implausible` when the field of view across the width is outside 15-200 degrees;
+        `focal_lengths_differ` when fx / fy is outside 0.97-1.03.
     """
     fx, fy, cx, cy = params[:4]
     distortion = params[4:]
@@ -52,4 +72,7 @@ def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Fla
         flags.append(
             Flag("focal_implausible", Severity.WARNING, fov, threshold, "field of view across the crop, degrees")
         )
+    aspect = float(fx / fy)
+    if not 1.0 / MAX_ASPECT <= aspect <= MAX_ASPECT:
+        flags.append(Flag("focal_lengths_differ", Severity.WARNING, aspect, MAX_ASPECT, "fx / fy"))
     return flags

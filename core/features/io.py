@@ -29,6 +29,11 @@ class FrameFeatures:
         return len(self.keypoints)
 
 
+def strongest(features: FrameFeatures, count: int) -> FrameFeatures:
+    """The first `count` keypoints, which are the strongest."""
+    return FrameFeatures(features.keypoints[:count], features.scores[:count], features.descriptors[:count])
+
+
 def feature_name(index: int) -> str:
     """File name of a frame's features."""
     return f"{index:04d}.npz"

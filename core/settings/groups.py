@@ -146,6 +146,11 @@ class MatchSettings(Group):
     window: int = option(
         5, "each frame is paired with this many following frames", unit="frames", source="thesis", ge=1
     )
+    keyframes: bool = option(
+        True,
+        "on a slow clip also pair keyframes, chosen by motion of the picture, and seek the focal length on these",
+        source="decision 19; thesis off",
+    )
     bridge: bool = option(
         True, "seek pairs beyond the window where the sequence is thin: a dark stretch, a jump", source="method"
     )

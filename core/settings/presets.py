@@ -56,6 +56,7 @@ _PRESETS: dict[str, dict[str, object]] = {
         "camera.principal_point": "crop",
         "features.subpixel": False,
         "matching.method": "lightglue",
+        "matching.keyframes": False,
         "matching.bridge": False,
         "verification.max_error_px": 4.0,
         "verification.min_inlier_share": 0.0,

@@ -13,12 +13,14 @@ import numpy as np
 import pycolmap
 
 from core.checks.stats import model_stats
-from core.features.io import FrameFeatures
+from core.features.io import FrameFeatures, strongest
+from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher
 from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
 from core.scene.frame import image_name
 from core.settings import Settings
 from core.sparse.initial_pair import rank_initial_pairs
+from core.sparse.lens import MAX_K1
 from core.sparse.mapper import best_model, map_images, mapper_options
 from core.sparse.parallax import MIN_RESIDUAL_PX, rotation_residual_px
 from core.sparse.tracks import build_tracks, thin_cache
@@ -30,7 +32,13 @@ KEYPOINTS = 1000
 """Strongest keypoints per frame that take part."""
 
 GAPS = (1, 2, 4, 7)
-"""Frame differences of the matched pairs: wide ones fix the focal length, narrow ones hold the chain."""
+"""Differences of the matched pairs in keyframes: wide ones fix the focal length, narrow ones hold the chain."""
+
+WIDER_GAPS = (10, 14)
+"""Further differences, tried where a span comes apart: its motion shows too little depth over the others."""
+
+ENOUGH_SHARE = 0.8
+"""A span of which a smaller share maps is tried again with the wider pairs too."""
 
 PROBE_GAP, PROBE_KEYPOINTS, PROBES = 4, 400, 8
 """Spans are chosen by one pair of frames each: this far apart, with so many keypoints; so many per section."""
@@ -47,100 +55,134 @@ class SpanFocal:
     """What one span says. A span without a model has 0 registered images and the start's focal length."""
 
     start: int
+    """Its first frame."""
     end: int
+    """One more than its last frame."""
+    frames: int
+    """Keyframes in it: those that are mapped."""
     focal_px: float
     k1: float
     registered_images: int
     points3D: int  # noqa: N815 (COLMAP's and the contract's name)
     mean_reprojection_error_px: float
 
+    @property
+    def is_lens(self) -> bool:
+        """Whether the radial term is one that a lens may have."""
+        return abs(self.k1) < MAX_K1
 
-def choose_spans(n_frames: int, length: int, count: int, load: Load) -> list[tuple[int, int]]:
-    """Half-open spans of `length` frames, the liveliest of each of `count` equal sections of the clip.
+    @property
+    def is_whole(self) -> bool:
+        """Whether enough of the span maps."""
+        return self.registered_images >= ENOUGH_SHARE * self.frames
 
-    Lively is a pair of frames in the middle of the span that matches well and moved far in the image.
+
+def choose_spans(keyframes: Sequence[int], length: int, count: int, load: Load) -> list[tuple[int, ...]]:
+    """The keyframes of spans of `length` of them, the liveliest of each of `count` equal sections of the clip.
+
+    Lively is a pair of keyframes in the middle of the span that matches well and moved far in the image.
     """
+    n_frames = len(keyframes)
     length = min(length, n_frames)
     sections = max(1, min(count, n_frames // length if length else 1))
-    spans: list[tuple[int, int]] = []
+    spans: list[tuple[int, ...]] = []
     for section in range(sections):
         first = section * n_frames // sections
         last = max(first, (section + 1) * n_frames // sections - length)
         starts = sorted({int(start) for start in np.linspace(first, last, PROBES)})
-        best = max(starts, key=lambda start: _liveliness(start + length // 2, n_frames, load))
-        spans.append((best, best + length))
+        best = max(starts, key=lambda start: _liveliness(start + length // 2, keyframes, load))
+        spans.append(tuple(keyframes[best : best + length]))
     return spans
 
 
 def find_focal(
-    span: tuple[int, int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
+    span: Sequence[int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
 ) -> SpanFocal:
     """Map one span from `camera` (of the model `core.sparse.lens.ESTIMATE_MODEL`) and refine its focal length and k1.
 
+    A span that comes apart, or whose lens runs away, is mapped again with wider pairs too. What maps more of it counts,
+    a lens that has not run away before one that has.
+
     Args:
-        span: half-open interval of frames.
+        span: its keyframes, rising.
         camera: `pycolmap.Camera` with the start value.
         settings: of the run, with what the stage `focal` declares.
         load: features of a frame.
         report: progress in [0, 1].
     """
-    nothing = SpanFocal(*span, camera.mean_focal_length(), 0.0, 0, 0, 0.0)
-    frames, table = _match(span, camera, settings, load, report)
-    residual = rotation_residual_px(build_tracks(table), frames)
-    if residual is None or residual < MIN_RESIDUAL_PX:
-        return nothing
-    everything = {frame: np.arange(len(xy)) for frame, xy in zip(frames.indices, frames.keypoints, strict=True)}
-    cache = thin_cache(table, frames, everything, settings.verification.min_inliers)
-    ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
-    # One radial term is little enough to be free from the start.
-    mapper = settings.mapper.model_copy(update={"refine_distortion": True})
-    options = mapper_options(mapper, threads=1, seed=settings.seed, tuned=True)
-    options.multiple_models = False
-    models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked]) if ranked else []
-    model = best_model(models)
-    if model is None:
-        return nothing
-    adjustment = pycolmap.BundleAdjustmentOptions()
-    adjustment.print_summary = False
-    adjustment.ceres.solver_options.num_threads = 1  # more would not repeat to the last bit
-    pycolmap.bundle_adjustment(model, adjustment)
-    stats, lens = model_stats(model), model.cameras[camera.camera_id]
-    return SpanFocal(
-        *span,
-        float(lens.mean_focal_length()),
-        float(lens.params[3]),
-        stats.registered_images,
-        stats.points3D,
-        stats.mean_reprojection_error_px,
-    )
+    searched = _Span(span, camera, settings, load, report)
+    found = searched.map(GAPS)
+    if (found.is_whole and found.is_lens) or len(span) <= WIDER_GAPS[0]:
+        return found
+    wider = searched.map(GAPS + WIDER_GAPS)
+    return max(found, wider, key=lambda one: (one.is_lens, one.registered_images))
 
 
-def _match(
-    span: tuple[int, int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
-) -> tuple[Frames, PairTable]:
-    """The frames of a span and their verified pairs, with this camera."""
-    indices = tuple(range(*span))
-    features = {index: strongest(load(index), KEYPOINTS) for index in indices}
-    matching = settings.matching.model_copy(update={"method": "mutual_nearest"})
-    matcher = PairMatcher(matching, Verifier(camera, settings.verification, settings.seed))
-    pairs = [(a, a + gap) for a in indices for gap in GAPS if a + gap < span[1]]
-    matched = []
-    for row, (a, b) in enumerate(pairs):
-        report(row / len(pairs), f"frames {a} and {b}")
-        matched.append(matcher.match(features[a], features[b]))
-    keypoints = tuple(features[index].keypoints.astype(np.float64) for index in indices)
-    frames = Frames(indices, tuple(image_name(index) for index in indices), keypoints, camera)
-    return frames, within(make_table(pairs, matched), *span)
+class _Span:
+    """A span of keyframes and the pairs of it that have been matched."""
+
+    def __init__(
+        self, span: Sequence[int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
+    ) -> None:
+        self._indices, self._camera, self._settings, self._report = tuple(span), camera, settings, report
+        self._features = {index: strongest(load(index), KEYPOINTS) for index in self._indices}
+        matching = settings.matching.model_copy(update={"method": "mutual_nearest"})
+        self._matcher = PairMatcher(matching, Verifier(camera, settings.verification, settings.seed))
+        self._matched: dict[tuple[int, int], MatchedPair] = {}
+
+    def map(self, gaps: Sequence[int]) -> SpanFocal:
+        """What the pairs at these differences say."""
+        camera, settings, indices = self._camera, self._settings, self._indices
+        bounds = indices[0], indices[-1] + 1, len(indices)
+        nothing = SpanFocal(*bounds, camera.mean_focal_length(), 0.0, 0, 0, 0.0)
+        table = self._match(gaps)
+        keypoints = tuple(self._features[index].keypoints.astype(np.float64) for index in indices)
+        frames = Frames(indices, tuple(image_name(index) for index in indices), keypoints, camera)
+        residual = rotation_residual_px(build_tracks(table), frames)
+        if residual is None or residual < MIN_RESIDUAL_PX:
+            return nothing
+        everything = {frame: np.arange(len(xy)) for frame, xy in zip(indices, keypoints, strict=True)}
+        cache = thin_cache(table, frames, everything, settings.verification.min_inliers)
+        ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
+        # One radial term is little enough to be free from the start.
+        mapper = settings.mapper.model_copy(update={"refine_distortion": True})
+        options = mapper_options(mapper, threads=1, seed=settings.seed, tuned=True)
+        options.multiple_models = False
+        # COLMAP's own search of a first pair would try every one, at many times the cost, where wider pairs help more.
+        models = map_images(cache, options, pairs=[(a + 1, b + 1) for a, b in ranked], search=False)
+        model = best_model(models)
+        if model is None:
+            return nothing
+        adjustment = pycolmap.BundleAdjustmentOptions()
+        adjustment.print_summary = False
+        adjustment.ceres.solver_options.num_threads = 1  # more would not repeat to the last bit
+        pycolmap.bundle_adjustment(model, adjustment)
+        stats, lens = model_stats(model), model.cameras[camera.camera_id]
+        return SpanFocal(
+            *bounds,
+            float(lens.mean_focal_length()),
+            float(lens.params[3]),
+            stats.registered_images,
+            stats.points3D,
+            stats.mean_reprojection_error_px,
+        )
+
+    def _match(self, gaps: Sequence[int]) -> PairTable:
+        """The verified pairs at these differences, those known already as they are."""
+        places = range(len(self._indices))
+        pairs = [(self._indices[i], self._indices[i + gap]) for i in places for gap in gaps if i + gap in places]
+        for row, (a, b) in enumerate(pairs):
+            self._report(row / len(pairs), f"frames {a} and {b}")
+            if (a, b) not in self._matched:
+                self._matched[a, b] = self._matcher.match(self._features[a], self._features[b])
+        table = make_table(pairs, [self._matched[pair] for pair in pairs])
+        return within(table, self._indices[0], self._indices[-1] + 1)
 
 
-def strongest(features: FrameFeatures, count: int) -> FrameFeatures:
-    """The first `count` keypoints, which are the strongest."""
-    return FrameFeatures(features.keypoints[:count], features.scores[:count], features.descriptors[:count])
-
-
-def _liveliness(middle: int, n_frames: int, load: Load) -> float:
-    a = max(0, min(middle - PROBE_GAP // 2, n_frames - 1 - PROBE_GAP))
-    first, second = (strongest(load(min(i, n_frames - 1)), PROBE_KEYPOINTS) for i in (a, a + PROBE_GAP))
+def _liveliness(middle: int, keyframes: Sequence[int], load: Load) -> float:
+    last = len(keyframes) - 1
+    a = max(0, min(middle - PROBE_GAP // 2, last - PROBE_GAP))
+    first, second = (strongest(load(keyframes[min(i, last)]), PROBE_KEYPOINTS) for i in (a, a + PROBE_GAP))
     if len(first) == 0 or len(second) == 0:
         return 0.0
     matches = mutual_nearest(unit_descriptors(first.descriptors), unit_descriptors(second.descriptors), 0.9)
@@ -168,5 +210,5 @@ def joined(spans: Sequence[SpanFocal]) -> dict[str, float]:
         "registered": sum(span.registered_images for span in spans),
         "points3D": int(total),
         "mean_reprojection_error_px": error,
-        "frames": sum(span.end - span.start for span in spans),
+        "frames": sum(span.frames for span in spans),
     }

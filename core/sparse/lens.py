@@ -30,6 +30,16 @@ MIN_AGREEMENT = 0.5
 FOV_RANGE_DEG = (10.0, 240.0)
 """A focal length that gives another horizontal field of view is no lens."""
 
+MAX_K1 = 1.0
+"""A radial term as large as this has run away with the focal length: 0.33 makes the equidistant lens rectilinear, and
+COLMAP's mapper drops images at 1 (`max_extra_param`)."""
+
+SOLE_FOV_RANGE_DEG = (30.0, 180.0)
+"""Of a start that no other agrees with: another field of view has more likely run away than been found."""
+
+UNKNOWN = "lens_unknown"
+"""Reason, and code of the flag, of a lens that is not used because the starts do not tell it."""
+
 
 def focal_from_fov(fov_deg: float, source_width: int) -> float:
     """Focal length in px of an equidistant lens (r = f theta) with this horizontal view of the source frame."""
@@ -71,14 +81,17 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
     the longer side of the crop. `reason` says why an estimate was asked for and not used.
     """
     width, height = _size(frames)
+    source_width = int(frames["source_width"])
     focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
     chosen: Facts | None = None
     if settings.fov_deg is not None:
-        focal, origin = focal_from_fov(settings.fov_deg, int(frames["source_width"])), "given"
+        focal, origin = focal_from_fov(settings.fov_deg, source_width), "given"
     elif settings.focal == "estimate":
-        chosen = _best_start(starts, int(frames["source_width"]))
+        chosen = _best_start(starts, source_width)
         if chosen is None:
-            reason = "no_start_found_a_model"
+            reason = UNKNOWN if any(_found_a_model(start) for start in starts) else "no_start_found_a_model"
+        elif _ran_away_alone(chosen, starts, source_width):
+            chosen, reason = None, UNKNOWN
         else:
             focal, k1, origin = float(chosen["focal_px"]), float(chosen["k1"]), "estimated"
     agreement = _agreement(starts, focal) if chosen is not None else None
@@ -92,16 +105,27 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
         "agreement": agreement,
         "starts": [dict(start) for start in starts],
-        "flags": [] if settings.focal != "estimate" or origin == "given" else _doubts(agreement),
+        "flags": [] if settings.focal != "estimate" or origin == "given" else _doubts(agreement, reason),
     }
+
+
+def spans_said(camera: Facts) -> list[float]:
+    """Focal lengths in px that the chosen start found, one for each of its spans that mapped; none without a choice."""
+    chosen = [start for start in camera["starts"] if start["fov_deg"] == camera["chosen_start_deg"]]
+    return [
+        float(span["focal_px"])
+        for start in chosen
+        for span in start.get("spans", ())
+        if span["registered_images"] >= MIN_REGISTERED and span["points3D"] >= MIN_POINTS
+    ]
 
 
 def _best_start(starts: Sequence[Facts], source_width: int) -> Facts | None:
     usable = [
         start
         for start in starts
-        if start["registered"] >= MIN_REGISTERED
-        and start["points3D"] >= MIN_POINTS
+        if _found_a_model(start)
+        and abs(start["k1"]) < MAX_K1
         and FOV_RANGE_DEG[0] <= fov_from_focal(float(start["focal_px"]), source_width) <= FOV_RANGE_DEG[1]
     ]
     if not usable:
@@ -113,8 +137,21 @@ def _best_start(starts: Sequence[Facts], source_width: int) -> Facts | None:
     return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
 
 
-def _doubts(agreement: float | None) -> list[FlagFields]:
+def _found_a_model(start: Facts) -> bool:
+    return bool(start["registered"] >= MIN_REGISTERED and start["points3D"] >= MIN_POINTS)
+
+
+def _ran_away_alone(chosen: Facts, starts: Sequence[Facts], source_width: int) -> bool:
+    """Whether no other start agrees with this one, and what it found is hardly a lens."""
+    fov = fov_from_focal(float(chosen["focal_px"]), source_width)
+    hardly = not SOLE_FOV_RANGE_DEG[0] <= fov <= SOLE_FOV_RANGE_DEG[1]
+    return hardly and len(starts) > 1 and len(_near(starts, float(chosen["focal_px"]))) <= 1
+
+
+def _doubts(agreement: float | None, reason: str) -> list[FlagFields]:
     """Flags of an estimate; without any usable start nothing agrees."""
+    if reason == UNKNOWN:
+        return [Flag(UNKNOWN, Severity.WARNING, where="camera").to_dict()]
     share = agreement or 0.0
     if share >= MIN_AGREEMENT:
         return []
@@ -124,8 +161,12 @@ def _doubts(agreement: float | None) -> list[FlagFields]:
 
 def _agreement(starts: Sequence[Facts], focal: float) -> float:
     """Share of all starts that ended near `focal`."""
-    near = [start for start in starts if start["registered"] and abs(start["focal_px"] / focal - 1.0) <= AGREE]
-    return len(near) / len(starts)
+    return len(_near(starts, focal)) / len(starts)
+
+
+def _near(starts: Sequence[Facts], focal: float) -> list[Facts]:
+    """The starts that ended near `focal`."""
+    return [start for start in starts if start["registered"] and abs(start["focal_px"] / focal - 1.0) <= AGREE]
 
 
 def _size(frames: Facts) -> tuple[int, int]:

@@ -84,6 +84,7 @@ def map_images(
     options: pycolmap.IncrementalPipelineOptions,
     *,
     pairs: Sequence[tuple[int, int]] = (),
+    search: bool = True,
     start_model: pycolmap.Reconstruction | None = None,
     progress: Progress | None = None,
 ) -> list[pycolmap.Reconstruction]:
@@ -94,6 +95,7 @@ def map_images(
         options: from `mapper_options`.
         pairs: image ids of initial pairs tried in turn; a whole model ends the search. When none of them
             gives a model of half of the images, COLMAP's own search follows.
+        search: without it no other pairs are searched for.
         start_model: go on from this model instead (set ``options.fix_existing_frames`` to hold its poses).
             Its frames that are not in `cache` are dropped; it is not changed.
         progress: see `Progress`.
@@ -105,7 +107,7 @@ def map_images(
         models += _grow(cache, _from_pair(options, pair), pycolmap.Reconstruction(), progress)
         if _largest(models) >= WHOLE_SHARE * cache.num_images():
             break
-    if _largest(models) < ENOUGH_SHARE * cache.num_images():
+    if search and _largest(models) < ENOUGH_SHARE * cache.num_images():
         models += _search(cache, options, progress)
     return models
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.checks.lens import check_shift
+from core.checks.lens import check_left, check_shift
 from core.checks.model import check_model, is_wrong
 from core.checks.stats import model_stats
 from core.errors import StageFailed
@@ -19,6 +20,7 @@ from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.keypoint_alignment import align_keypoints
+from core.sparse.lens import spans_said
 from core.sparse.loose import drop_faint_frames, drop_loose_ends
 from core.sparse.mapper import mapper_options, open_cache
 from core.stage import Facts, StageResult, StageTask
@@ -75,7 +77,7 @@ def run(task: StageTask) -> StageResult:
     write_registered(task.out, [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())])
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.piece else n_frames
-    facts = _facts(model, adjustment, table, offered, n_search)
+    facts = _facts(model, adjustment, table, offered, n_search, spans_said(task.facts["camera"]))
     return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": loose})
 
 
@@ -109,13 +111,19 @@ def _aligner(task: StageTask) -> Align:
 
 
 def _facts(
-    model: pycolmap.Reconstruction, adjustment: Adjustment | None, table: PairTable, n_frames: int, n_search: int
+    model: pycolmap.Reconstruction,
+    adjustment: Adjustment | None,
+    table: PairTable,
+    n_frames: int,
+    n_search: int,
+    said_px: Sequence[float],
 ) -> Facts:
     stats = model_stats(model)
     flags = check_model(model, stats, table, n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:
         flags += filter(None, [check_shift(adjustment.trimming.shift)])
     params = np.array(next(iter(model.cameras.values())).params)
+    flags += filter(None, [check_left(float(params[:2].mean()), said_px)])
     return {
         "registered_images": stats.registered_images,
         "points3D": stats.points3D,

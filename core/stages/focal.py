@@ -8,13 +8,14 @@ from functools import lru_cache
 import torch
 
 from core.features.io import FrameFeatures, feature_files, read_features
+from core.matching.keyframes import read_keyframes
 from core.sparse.focal import choose_spans, find_focal, joined
 from core.sparse.lens import start_lens
 from core.stage import StageResult, StageTask
 
 
 def run(task: StageTask) -> StageResult:
-    """Map a few spans from the task's field of view; a video that gives no model registers 0 images."""
+    """Map a few spans of keyframes from the task's field of view; a video that gives no model registers 0 images."""
     torch.set_num_threads(task.threads)
     settings, frames = task.settings, task.facts["frames"]
     files = feature_files(folder for _, folder in task.fan_in("features"))
@@ -25,7 +26,8 @@ def run(task: StageTask) -> StageResult:
 
     fov = float(task.args["fov_deg"])
     lens = start_lens(frames, settings.camera, fov)
-    spans = choose_spans(int(frames["n_search"]), settings.camera.focal_span, settings.camera.focal_spans, load)
+    keyframes = read_keyframes(task.input("motion")).frames if task.has("motion") else range(int(frames["n_search"]))
+    spans = choose_spans(keyframes, settings.camera.focal_span, settings.camera.focal_spans, load)
     found = []
     for number, span in enumerate(spans):
 

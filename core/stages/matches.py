@@ -10,6 +10,7 @@ from core.features.io import FrameFeatures, feature_files, read_features
 from core.io.frames import read_frames
 from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher, Patience
+from core.matching.keyframes import keyframe_pairs, read_keyframes
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
 from core.verification import Verifier, read_camera
@@ -57,4 +58,8 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
 
 def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
     frames = read_frames(task.input("frames"))
-    return match_pairs(frames.moments_s, frames.n_search, task.settings.matching.window, frames.videos)
+    near = match_pairs(frames.moments_s, frames.n_search, task.settings.matching.window, frames.videos)
+    if not task.has("motion"):
+        return near
+    far = keyframe_pairs(read_keyframes(task.input("motion")).frames)
+    return sorted({*near, *((a, b) for a, b in far if frames.videos[a] == frames.videos[b])})

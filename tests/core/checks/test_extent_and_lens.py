@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from core.checks.lens import check_lens, check_shift
+from core.checks.lens import check_left, check_lens, check_shift
 from core.checks.model import check_coverage, check_points, check_reprojection
 from core.flags import Flag
 from core.geometry.fisheye import fisheye_radius, viewing_angle
@@ -42,7 +42,7 @@ def test_field_of_view_outside_of_15_to_200_degrees(focal: float, code: list[str
 
 
 def test_a_polynomial_that_turns_back_inside_the_image_is_flagged() -> None:
-    flags = check_lens(540, 360, np.array([566.0, 538, 270, 180, 0.6, -0.55, -8.8, 5.0]))
+    flags = check_lens(540, 360, np.array([566.0, 558, 270, 180, 0.6, -0.55, -8.8, 5.0]))
     assert codes(flags) == ["distortion_implausible"]
 
 
@@ -51,6 +51,22 @@ def test_a_focal_length_that_moves_with_the_choice_of_tracks_is_flagged() -> Non
     assert check_shift(-0.05) is None
     flag = raised(check_shift(-0.2))
     assert (flag.code, flag.severity, flag.value) == ("lens_unsettled", "warning", 0.2)
+
+
+def test_a_focal_length_that_left_what_a_span_said_is_flagged() -> None:
+    assert check_left(520.0, []) is None
+    assert check_left(520.0, [600.0, 460.0]) is None
+    flag = raised(check_left(802.0, [790.0, 444.0]))
+    assert flag.code == "lens_unsettled"
+    assert flag.value == pytest.approx(802 / 444 - 1)
+
+
+DIFFER = ["focal_lengths_differ"]
+
+
+@pytest.mark.parametrize(("aspect", "code"), [(0.98, []), (1.02, []), (0.65, DIFFER), (1.04, DIFFER)])
+def test_pixels_are_square(aspect: float, code: list[str]) -> None:
+    assert codes(check_lens(787, 525, np.array([520 * aspect, 520, 393, 262, 0, 0, 0, 0.0]))) == code
 
 
 def test_viewing_angle_inverts_the_polynomial() -> None:

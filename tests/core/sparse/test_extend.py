@@ -15,7 +15,7 @@ from core.sparse.extend import register_rest
 from core.stage import Facts, StageTask
 from core.stages import confirm as confirm_stage
 from core.stages import extend as extend_stage
-from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
+from tests.core.sparse.scene import FOCAL, Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)
 N_FRAMES = 20
@@ -87,6 +87,7 @@ def run_stages(
     out: Path,
     start_mode: str = "warm",
     options: Mapping[str, object] | None = None,
+    said_px: float = FOCAL,
 ) -> tuple[Facts, Facts]:
     settings = make_settings(
         "default", {"mapper.search_tracks": 150, "model.align_keypoints": False, **(options or {})}
@@ -102,7 +103,13 @@ def run_stages(
     confirmed = confirm_stage.run(
         task("confirm", {"graph": graph, "reduce_refine": out / "reduce_refine"}, {"reduce_refine": reduced})
     ).facts
-    facts = {"frames": {"n_frames": N_FRAMES, "n_search": N_FRAMES}, "confirm": confirmed}
+    spans = [{"focal_px": said_px, "registered_images": 14, "points3D": 900}]
+    camera = {"chosen_start_deg": 85.0, "starts": [{"fov_deg": 85.0, "spans": spans}]}
+    facts: dict[str, Facts] = {
+        "frames": {"n_frames": N_FRAMES, "n_search": N_FRAMES},
+        "camera": camera,
+        "confirm": confirmed,
+    }
     return confirmed, extend_stage.run(task("extend", {"graph": graph, "confirm": out / "confirm"}, facts)).facts
 
 
@@ -136,7 +143,9 @@ def test_what_is_switched_off_is_not_done(graph: Path, winner: pycolmap.Reconstr
 def test_a_winner_from_scratch_has_nothing_to_confirm(
     graph: Path, winner: pycolmap.Reconstruction, tmp_path: Path
 ) -> None:
-    confirmed, _ = run_stages(graph, winner, tmp_path, "scratch", {"model.final_adjustment": False})
+    off = {"model.final_adjustment": False}
+    confirmed, extended = run_stages(graph, winner, tmp_path, "scratch", off, said_px=1.5 * FOCAL)
+    assert [flag["code"] for flag in extended["checks"]] == ["lens_unsettled"]
     assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "scratch")
     same = [pycolmap.Reconstruction(tmp_path / name / "model") for name in ("reduce_refine", "confirm")]
     assert model_stats(same[0]) == model_stats(same[1])

@@ -1,20 +1,32 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from core.features.io import write_features
+from core.matching.keyframes import Keyframes, write_keyframes
 from core.settings import make_settings
-from core.sparse.focal import choose_spans, joined
-from core.sparse.lens import fov_from_focal
+from core.sparse import focal as search
+from core.sparse.focal import GAPS, SpanFocal, choose_spans, find_focal, joined
+from core.sparse.lens import fov_from_focal, start_lens
 from core.stage import StageTask
 from core.stages import focal
 from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, Scene, make_scene
 
 TRUE_FOV = fov_from_focal(FOCAL, WIDTH)
+
+
+CAMERA = make_settings().camera
+
+
+def found(registered: int, k1: float = 0.0) -> SpanFocal:
+    """What a span of 24 keyframes said."""
+    return SpanFocal(0, 24, 24, FOCAL, k1, registered, 500, 0.5)
 
 
 def task(scene: Scene, folder: Path, fov_deg: float) -> StageTask:
@@ -52,27 +64,79 @@ def test_a_turning_camera_says_nothing(tmp_path: Path) -> None:
 def test_spans_lie_where_the_camera_moves() -> None:
     still, moving = make_scene(1, 400), make_scene(20, 400)
     features = still.features * 40 + moving.features
-    spans = choose_spans(60, 12, 1, lambda index: features[index])
+    spans = choose_spans(range(60), 12, 1, lambda index: features[index])
     assert len(spans) == 1
     assert spans[0][0] >= 30
-    assert spans[0][1] - spans[0][0] == 12
+    assert spans[0] == tuple(range(spans[0][0], spans[0][0] + 12))
 
 
 def test_spans_cover_sections_and_short_clips() -> None:
     features = make_scene(30, 200).features
-    first, second = choose_spans(30, 10, 2, lambda index: features[index])
-    assert first[1] <= 15 <= second[0]
-    assert second[1] <= 30
-    assert choose_spans(8, 30, 2, lambda index: features[index]) == [(0, 8)]
+    first, second = choose_spans(range(30), 10, 2, lambda index: features[index])
+    assert first[-1] < 15 <= second[0]
+    assert second[-1] < 30
+    assert choose_spans(range(8), 30, 2, lambda index: features[index]) == [tuple(range(8))]
+
+
+def test_spans_consist_of_keyframes() -> None:
+    features = make_scene(30, 200).features
+    keyframes = (0, 3, 4, 9, 12, 15, 21, 22, 27, 29)
+    spans = choose_spans(keyframes, 4, 2, lambda index: features[index])
+    assert [len(span) for span in spans] == [4, 4]
+    assert all("".join(map(chr, span)) in "".join(map(chr, keyframes)) for span in spans)
+
+
+def test_a_slow_clip_is_mapped_on_its_keyframes(tmp_path: Path) -> None:
+    scene = make_scene(70, 900, step=0.02)
+    slow = task(scene, tmp_path, TRUE_FOV * 0.8)
+    keyframes = tuple(range(0, 70, 5))
+    folder = tmp_path / "motion"
+    folder.mkdir()
+    write_keyframes(folder, Keyframes(keyframes, (0.03,) * (len(keyframes) - 1)))
+    facts = focal.run(replace(slow, inputs={**slow.inputs, "motion": folder})).facts
+    assert facts["registered"] == facts["frames"] == len(keyframes)
+    assert [(span["start"], span["end"]) for span in facts["spans"]] == [(0, 66)]
+    assert facts["focal_px"] == pytest.approx(FOCAL, rel=0.05)
 
 
 def test_spans_are_joined_by_their_points() -> None:
-    from core.sparse.focal import SpanFocal
-
-    facts = joined([SpanFocal(0, 30, 500.0, 0.1, 30, 3000, 0.5), SpanFocal(40, 70, 520.0, 0.2, 20, 1000, 0.9)])
+    facts = joined([SpanFocal(0, 30, 30, 500.0, 0.1, 30, 3000, 0.5), SpanFocal(40, 90, 30, 520.0, 0.2, 20, 1000, 0.9)])
     assert facts["focal_px"] == pytest.approx(math.exp(0.75 * math.log(500) + 0.25 * math.log(520)))
     assert facts["k1"] == pytest.approx(0.125)
     assert (facts["registered"], facts["points3D"], facts["frames"]) == (50, 4000, 60)
     assert facts["mean_reprojection_error_px"] == pytest.approx(0.6)
-    nothing = joined([SpanFocal(0, 30, 700.0, 0.0, 0, 0, 0.0)])
+    nothing = joined([SpanFocal(0, 30, 30, 700.0, 0.0, 0, 0, 0.0)])
     assert (nothing["focal_px"], nothing["registered"]) == (700.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("near", "wide", "kept"),
+    [
+        (found(20), found(24), "near"),
+        (found(10), found(20), "wide"),
+        (found(10), found(5), "near"),
+        (found(20, k1=1.2), found(18), "wide"),
+        (found(20, k1=1.2), found(24, k1=-1.2), "wide"),
+        (found(20, k1=1.2), found(10, k1=-1.2), "near"),
+    ],
+)
+def test_a_span_that_comes_apart_is_tried_with_wider_pairs(
+    near: SpanFocal, wide: SpanFocal, kept: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Sequence[int]] = []
+
+    class Span:
+        def __init__(self, *_arguments: object) -> None:
+            pass
+
+        def map(self, gaps: Sequence[int]) -> SpanFocal:
+            asked.append(gaps)
+            return near if len(asked) == 1 else wide
+
+    monkeypatch.setattr(search, "_Span", Span)
+    lens = start_lens({"crop": [0, 0, WIDTH, HEIGHT], "source_width": WIDTH, "source_height": HEIGHT}, CAMERA, TRUE_FOV)
+    result = find_focal(range(24), lens, make_settings(), lambda _: make_scene(1, 9).features[0], lambda *_: None)
+    assert result == {"near": near, "wide": wide}[kept]
+    assert asked[0] == GAPS
+    assert (len(asked) > 1) == (near.registered_images < 0.8 * 24 or near.k1 > 1)
+    assert all(set(gaps) > set(GAPS) for gaps in asked[1:])

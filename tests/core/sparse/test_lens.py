@@ -9,7 +9,14 @@ import pytest
 
 from core.settings import make_settings
 from core.settings.groups import CameraSettings
-from core.sparse.lens import choose_lens, focal_from_fov, fov_from_focal, principal_point, start_lens
+from core.sparse.lens import (
+    choose_lens,
+    focal_from_fov,
+    fov_from_focal,
+    principal_point,
+    spans_said,
+    start_lens,
+)
 from core.stage import StageTask
 from core.stages import camera
 
@@ -73,10 +80,49 @@ def test_starts_that_do_not_agree_are_flagged(agreeing: int, flagged: bool) -> N
 
 
 def test_starts_that_found_nothing_fall_back_to_colmap_with_a_reason() -> None:
-    starts = [start(40.0, 1375.0, registered=0, points=0), start(55.0, 9000.0), start(70.0, 500.0, points=20)]
+    starts = [
+        start(40.0, 1375.0, registered=0, points=0),
+        start(55.0, 500.0, registered=7),
+        start(70.0, 500.0, points=20),
+    ]
     chosen = choose_lens(FRAMES, CameraSettings(), starts)
     assert (chosen["focal_from"], chosen["reason"]) == ("colmap", "no_start_found_a_model")
     assert chosen["agreement"] is None
+
+
+def test_a_lens_that_ran_away_and_nobody_agrees_on_is_not_used() -> None:
+    ran_away = start(40.0, focal_from_fov(20.0, 960))
+    chosen = choose_lens(FRAMES, CameraSettings(), [ran_away, *(start(50.0 + i, 0.0, 0, 0) for i in range(5))])
+    assert (chosen["focal_from"], chosen["reason"], chosen["chosen_start_deg"]) == ("colmap", "lens_unknown", None)
+    assert chosen["params"] == pytest.approx([944.4, 944.4, 442.0, 281.0, 0, 0, 0, 0])
+    assert [flag["code"] for flag in chosen["flags"]] == ["lens_unknown"]
+    impossible = choose_lens(FRAMES, CameraSettings(), [start(55.0, 9000.0)])
+    assert (impossible["focal_from"], impossible["reason"]) == ("colmap", "lens_unknown")
+    agreed = choose_lens(FRAMES, CameraSettings(), [ran_away, start(55.0, 1.02 * ran_away["focal_px"], error=0.6)])
+    assert agreed["focal_from"] == "estimated"
+
+
+def test_a_start_whose_radial_term_ran_away_gives_way_to_one_that_maps_less() -> None:
+    starts = [
+        {**start(40.0, 7000.0), "k1": -1.05},
+        {**start(55.0, 700.0), "k1": 5.0},
+        start(70.0, 520.0, registered=20),
+    ]
+    chosen = choose_lens(FRAMES, CameraSettings(), starts)
+    assert (chosen["chosen_start_deg"], chosen["params"][0]) == (70.0, 520.0)
+    nothing_left = choose_lens(FRAMES, CameraSettings(), starts[:2])
+    assert (nothing_left["focal_from"], nothing_left["reason"]) == ("colmap", "lens_unknown")
+    assert [flag["code"] for flag in nothing_left["flags"]] == ["lens_unknown"]
+
+
+def test_what_the_spans_of_the_chosen_start_said() -> None:
+    spans = [
+        {"focal_px": 510.0, "registered_images": 30, "points3D": 900},
+        {"focal_px": 9000.0, "registered_images": 3, "points3D": 900},
+    ]
+    starts = [{**start(40.0, 519.0), "spans": spans}, start(55.0, 530.0, registered=8)]
+    assert spans_said(choose_lens(FRAMES, CameraSettings(), starts)) == [510.0]
+    assert spans_said(choose_lens(FRAMES, CameraSettings(fov_deg=106.0), [])) == []
 
 
 def test_the_stage_writes_what_it_says(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Stages `features`, `matches` and `graph` in a row, on a small synthetic clip."""
+"""Stages `features`, `motion`, `matches` and `graph` in a row, on a small synthetic clip."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ import pytest
 from core.errors import Cancelled, StageFailed
 from core.features.io import FrameFeatures, read_features, write_features
 from core.matching.auto import GIVE_UP_AFTER
+from core.matching.keyframes import Keyframes, read_keyframes, write_keyframes
 from core.matching.lightglue import LightGlueMatcher
 from core.settings import make_settings
 from core.stage import StageTask
-from core.stages import features, graph, matches
+from core.stages import features, graph, matches, motion
 from core.verification import STRONG_INLIERS
 from core.videos import Recording
-from core.viewgraph import read_table
+from core.viewgraph import read_pairs, read_table
 from tests.core.making_frames import SIZE, frames_folder
 
 OPTIONS = {"features.max_keypoints": 400, "matching.method": "mutual_nearest", "matching.window": 2}
@@ -133,6 +134,21 @@ def test_a_missing_chunk_is_named(run: Path, tmp_path: Path) -> None:
     del inputs["features/001"]
     with pytest.raises(StageFailed, match="frame 3 has no features"):
         matches.run(_task("matches/000", tmp_path / "out", inputs, start=0, end=3))
+
+
+def test_motion_chooses_among_the_search_frames(run: Path, tmp_path: Path) -> None:
+    task = _task("motion", tmp_path, _inputs(run))
+    facts = motion.run(replace(task, facts={"frames": {"n_search": 5, "crop": [0, 0, *SIZE]}})).facts
+    assert read_keyframes(tmp_path).frames == (0, 1, 2, 3, 4)
+    assert facts == {"n_keyframes": 5, "median_step": 1.0, "motion_per_frame": pytest.approx(6 / SIZE[0], rel=0.05)}
+
+
+def test_keyframes_that_lie_apart_are_matched_too(run: Path, tmp_path: Path) -> None:
+    write_keyframes(tmp_path, Keyframes((0, 2, 4), (0.01, 0.01)))
+    inputs = {**_inputs(run), "motion": tmp_path}
+    matches.run(_task("matches/000", tmp_path / "out", inputs, start=0, end=3))
+    table, near = read_pairs(tmp_path / "out"), read_pairs(run / "matches" / "000")
+    assert {tuple(pair) for pair in table.pairs.tolist()} - {tuple(pair) for pair in near.pairs.tolist()} == {(0, 4)}
 
 
 def test_a_frame_that_shows_nothing_costs_little(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

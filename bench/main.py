@@ -10,6 +10,7 @@ from pathlib import Path
 
 from bench import measurements
 from bench.mutate import command as mutate
+from bench.real import command as real
 from bench.scenes import command as scenes
 from bench.soak import command as soak
 from core.errors import BadInput, BladeAtlasError
@@ -46,6 +47,9 @@ def make_parser() -> argparse.ArgumentParser:
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)
+    real_parser = commands.add_parser("real", help="run real clips with known cameras beside COLMAP")
+    real.add_arguments(real_parser)
+    real_parser.set_defaults(run=real.command)
     mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
     mutate.add_arguments(mutate_parser)
     mutate_parser.set_defaults(run=mutate.command)

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from core.flags import Severity
+
 Found = dict[str, Any]
 """A score and how it came about, as JSON."""
 
@@ -31,6 +33,11 @@ def kept_or_new(path: Path, key: str, make: Callable[[], Found]) -> Found:
     part.write_text(json.dumps(found, indent=1, allow_nan=False), encoding="utf-8")
     part.rename(path)
     return found
+
+
+def warnings_of(quality: Found) -> list[str]:
+    """Codes of the flags of a `quality.json` that are more than information, in order."""
+    return sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != Severity.INFO})
 
 
 def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

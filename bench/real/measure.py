@@ -16,13 +16,12 @@ from pathlib import Path
 import psutil
 import pycolmap
 
-from bench.kept import Found, kept_or_new, read_found
+from bench.kept import Found, kept_or_new, read_found, warnings_of
 from bench.real import peer
 from bench.real.clip import Clip, Reference
 from bench.real.score import score_peer, score_product
 from bench.scenes.run import program_digest
 from core.errors import StageFailed
-from core.flags import Severity
 from worker.events import EventKind
 
 LIMIT_S = 3 * 3600.0
@@ -136,7 +135,7 @@ class Bench:
                 "cpu_s": round(ended.cpu_s if ended.mark_cpu_s is None else ended.mark_cpu_s, 1),
                 "exit": ended.code,
                 "verdict": quality.get("verdict"),
-                "flags": sorted({one["code"] for one in quality.get("flags", ()) if one["severity"] != Severity.INFO}),
+                "flags": warnings_of(quality),
                 "score": asdict(score_product(out, clip, reference)),
             }
 

@@ -15,11 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench.accuracy.score import score_result
-from bench.kept import Found, kept_or_new, read_found
+from bench.kept import Found, kept_or_new, read_found, warnings_of
 from bench.scenes.make import is_made, make_scene
 from bench.scenes.spec import Scene
 from core.errors import StageFailed
-from core.flags import Severity
 
 LIMIT_S = 900.0
 """A run that takes longer is ended and counts as failed."""
@@ -74,28 +73,46 @@ class Bench:
         out = self.folder / "runs" / column.name / scene.name
         if not self.reuse:
             shutil.rmtree(out, ignore_errors=True)
-        whole = not out.exists()
-        command = [sys.executable, "-m", "cli.main", "run", str(source / "video.mp4"), str(source / "annotations.json")]
-        command += ["--out", str(out), "--preset", column.preset, "--roi", ",".join(f"{v:g}" for v in scene.roi)]
-        for name, value in column.options.items():
-            command += ["--set", f"{name}={value}"]
-        began = time.monotonic()
-        code, said = _finished(command)
-        seconds = time.monotonic() - began
-        quality = read_found(out / "quality.json")
-        if not quality:
-            raise StageFailed(f"the run of scene {scene.name} left no quality.json: {said[-500:]}", where=scene.name)
-        found = {
-            "seconds": round(seconds, 1) if whole else None,
-            "exit": code,
-            "verdict": quality.get("verdict"),
-            "flags": sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != Severity.INFO}),
-            "funnel": quality.get("funnel"),
-            "score": score_result(out, source / "truth"),
-        }
+        found = run_and_score(source, scene.roi, column, out)
         if not self.keep:
             shutil.rmtree(out)
         return found
+
+
+def run_and_score(source: Path, roi: Sequence[float], column: Column, out: Path) -> Found:
+    """Run a clip with truth through the command line and score what it left.
+
+    Args:
+        source: folder of `video.mp4`, `annotations.json` and `truth`.
+        roi: as shares of the picture's width and height.
+        column: preset and options.
+        out: result folder; gone on with when it is there.
+
+    Returns:
+        {seconds, exit, verdict, flags, funnel, score}; no time is told where the result folder was there.
+
+    Raises:
+        StageFailed: the run left no `quality.json`.
+    """
+    whole = not out.exists()
+    command = [sys.executable, "-m", "cli.main", "run", str(source / "video.mp4"), str(source / "annotations.json")]
+    command += ["--out", str(out), "--preset", column.preset, "--roi", ",".join(f"{v:g}" for v in roi)]
+    for name, value in column.options.items():
+        command += ["--set", f"{name}={value}"]
+    began = time.monotonic()
+    code, said = _finished(command)
+    seconds = time.monotonic() - began
+    quality = read_found(out / "quality.json")
+    if not quality:
+        raise StageFailed(f"the run of {source.name} left no quality.json: {said[-500:]}", where=source.name)
+    return {
+        "seconds": round(seconds, 1) if whole else None,
+        "exit": code,
+        "verdict": quality.get("verdict"),
+        "flags": warnings_of(quality),
+        "funnel": quality.get("funnel"),
+        "score": score_result(out, source / "truth"),
+    }
 
 
 def _finished(command: Sequence[str]) -> tuple[int, str]:

@@ -7,10 +7,16 @@ import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from bench.kept import Found, markdown_table
 from core.errors import BadInput
+
+if TYPE_CHECKING:
+    from bench.real.clip import Clip
+
+PART = ".part"
+"""Ends the name of a clip that is being built."""
 
 HEAD = (
     "clip",
@@ -62,23 +68,32 @@ def command(arguments: argparse.Namespace) -> None:
     print(markdown_table(HEAD, lines))
 
 
-def _clips(folder: Path, checkouts: Path | None) -> dict[str, Any]:
+def _clips(folder: Path, checkouts: Path | None) -> dict[str, Clip]:
     """Clips by name: those of the folder, and what can be built of the checkouts and is not there yet."""
     from bench.real.clip import REFERENCE, Clip
+
+    if checkouts is not None:
+        _build(folder, checkouts)
+    found = [path.parent for path in sorted(folder.glob(f"*/{REFERENCE}")) if path.parent.suffix != PART]
+    return {path.name: Clip(path.name, path) for path in found}
+
+
+def _build(folder: Path, checkouts: Path) -> None:
+    """Build every clip that is not there yet, whole or not at all; say which checkouts are missing."""
+    from bench.real.clip import REFERENCE
     from bench.real.sources import SOURCES
 
-    for source in SOURCES if checkouts is not None else ():
+    for source in SOURCES:
         if (folder / source.name / REFERENCE).is_file():
             continue
         if not source.is_there(checkouts):
             print(f"{source.name}: no checkout of {source.repository} in {checkouts}", file=sys.stderr)
             continue
-        work = folder / f"{source.name}.part"
+        work = folder / f"{source.name}{PART}"
         shutil.rmtree(work, ignore_errors=True)
         work.mkdir(parents=True)
         source.build(checkouts, work)
         work.rename(folder / source.name)
-    return {path.parent.name: Clip(path.parent.name, path.parent) for path in sorted(folder.glob(f"*/{REFERENCE}"))}
 
 
 def cells(clip: str, n_frames: int, side: str, found: Found) -> list[str]:

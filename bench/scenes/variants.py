@@ -115,7 +115,8 @@ def darkened(n_frames: int, count: int, light: float, seed: int = 0) -> tuple[li
             return rgb
         noise = np.random.default_rng([seed, index]).normal(scale=NOISE, size=rgb.shape)
         faint = rgb / 255.0 * light ** (1.0 / TONE) + noise
-        return np.clip(255.0 * faint, 0, 255).astype(np.uint8)
+        dimmed: U8 = np.clip(255.0 * faint, 0, 255).astype(np.uint8)
+        return dimmed
 
     return dark, change
 

@@ -27,12 +27,13 @@ def kept_or_new(path: Path, key: str, make: Callable[[], Found]) -> Found:
     known = read_found(path)
     if known.get("key") == key:
         return known
-    found = {"key": key, **make()}
+    text = json.dumps({"key": key, **make()}, indent=1, allow_nan=False)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(".part")
-    part.write_text(json.dumps(found, indent=1, allow_nan=False), encoding="utf-8")
+    part.write_text(text, encoding="utf-8")
     part.rename(path)
-    return found
+    # As it will be read the next time: a table must not depend on which of the two it is.
+    return read_found(path)
 
 
 def warnings_of(quality: Found) -> list[str]:

@@ -7,13 +7,10 @@ import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from bench.kept import Found, markdown_table
+from bench.real.clip import REFERENCE, Clip, read_reference
 from core.errors import BadInput
-
-if TYPE_CHECKING:
-    from bench.real.clip import Clip
 
 PART = ".part"
 """Ends the name of a clip that is being built."""
@@ -47,10 +44,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def command(arguments: argparse.Namespace) -> None:
     """Build what is missing, run what is missing and print the table; standard error tells each run's end."""
     # Imported here so that --help does not load the vision libraries.
-    from bench.real.clip import read_reference
     from bench.real.measure import Bench
 
     clips = _clips(arguments.out / "clips", arguments.sources)
+    if not clips:
+        raise BadInput(
+            f"there are no clips in {arguments.out / 'clips'}, and no checkout to build one of", where="--sources"
+        )
     wanted = [name for name in arguments.only.split(",") if name] or sorted(clips)
     unknown = set(wanted) - set(clips)
     if unknown:
@@ -58,7 +58,10 @@ def command(arguments: argparse.Namespace) -> None:
         raise BadInput(text, where="--only")
     if arguments.make:
         return
-    bench, lines = Bench(arguments.out, dict(item.split("=", 1) for item in arguments.set)), []
+    bench, lines = (
+        Bench(arguments.out, {name: value for name, _, value in (item.partition("=") for item in arguments.set)}),
+        [],
+    )
     for name in wanted:
         reference = read_reference(clips[name].folder)
         for side in ("peer", "product") if arguments.side == "both" else (arguments.side,):
@@ -70,8 +73,6 @@ def command(arguments: argparse.Namespace) -> None:
 
 def _clips(folder: Path, checkouts: Path | None) -> dict[str, Clip]:
     """Clips by name: those of the folder, and what can be built of the checkouts and is not there yet."""
-    from bench.real.clip import REFERENCE, Clip
-
     if checkouts is not None:
         _build(folder, checkouts)
     found = [path.parent for path in sorted(folder.glob(f"*/{REFERENCE}")) if path.parent.suffix != PART]
@@ -80,7 +81,7 @@ def _clips(folder: Path, checkouts: Path | None) -> dict[str, Clip]:
 
 def _build(folder: Path, checkouts: Path) -> None:
     """Build every clip that is not there yet, whole or not at all; say which checkouts are missing."""
-    from bench.real.clip import REFERENCE
+    # Imported here so that --help does not load the vision libraries.
     from bench.real.sources import SOURCES
 
     for source in SOURCES:

@@ -19,7 +19,7 @@ from bench.main import main
 from bench.real import measure, peer
 from bench.real.clip import Clip, Reference, read_reference, write_reference
 from bench.real.command import cells
-from bench.real.measure import Bench, run_and_time
+from bench.real.measure import Bench, Ended, run_and_time
 from bench.real.score import Score, score_peer, score_product
 from bench.real.sources import (
     FOUNTAIN,
@@ -309,6 +309,38 @@ def test_a_run_that_fails_leaves_no_score(tmp_path: Path, monkeypatch: pytest.Mo
     assert not list((tmp_path / "out/results").glob("*/*.json"))
 
 
+def test_a_run_is_kept_until_program_or_options_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    commands: list[list[str]] = []
+
+    def run(command: list[str], log: Path, mark: dict[str, str]) -> Ended:
+        commands.append(command)
+        out = Path(command[command.index("--out") + 1])
+        assert not out.exists(), "a run starts anew"
+        colmap_model(out, CENTERS, ROTATIONS)
+        (out / "frames.csv").write_text("\n".join(["index,source_index", *(f"{i},{i}" for i in range(N))]))
+        flags = [{"code": "few_points", "severity": "warning"}, {"code": "times_made_up", "severity": "info"}]
+        (out / "quality.json").write_text(json.dumps({"verdict": "suspect", "flags": flags}))
+        assert mark == {"event": "ended", "key": "extend"}
+        return Ended(0, 9.0, None if "--set" in command else 4.0, "")
+
+    monkeypatch.setattr(measure, "run_and_time", run)
+    clip, reference = reference_of(tmp_path / "clip")
+    bench = Bench(tmp_path / "out", {})
+    found = bench.product(clip, reference)
+    assert bench.product(clip, reference) == found
+    assert len(commands) == 1
+    assert commands[0][commands[0].index("--roi") + 1] == "full"
+    assert (found["verdict"], found["flags"], found["cpu_s"]) == ("suspect", ["few_points"], 4.0)
+    assert found["score"]["registered"] == N
+    told = Bench(tmp_path / "out", {"frames.count": "18"})
+    assert told.product(clip, reference)["cpu_s"] == 9.0, "the whole run's, where the sparse model never came"
+    assert commands[1][-2:] == ["--set", "frames.count=18"]
+    assert bench.product(clip, reference) == found
+    monkeypatch.setattr(measure, "program_digest", lambda: "another program")
+    bench.product(clip, reference)
+    assert len(commands) == 3
+
+
 def test_the_command_builds_what_is_there_and_prints_a_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -326,6 +358,8 @@ def test_the_command_builds_what_is_there_and_prints_a_table(
         return found
 
     monkeypatch.setattr(measure.Bench, "product", product)
+    assert main(["real", str(tmp_path / "out")]) == 2
+    assert "there are no clips" in capsys.readouterr().err
     arguments = ["real", str(tmp_path / "out"), "--sources", str(tmp_path / "checkouts")]
     assert main([*arguments, "--make"]) == 0
     assert "no checkout of anitarau/simcol" in capsys.readouterr().err

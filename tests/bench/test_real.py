@@ -325,11 +325,13 @@ def test_a_run_is_kept_until_program_or_options_change(tmp_path: Path, monkeypat
 
     monkeypatch.setattr(measure, "run_and_time", run)
     clip, reference = reference_of(tmp_path / "clip")
+    pictures(clip.video.with_name("pictures"), ["0000.png"])
     bench = Bench(tmp_path / "out", {})
     found = bench.product(clip, reference)
     assert bench.product(clip, reference) == found
     assert len(commands) == 1
     assert commands[0][commands[0].index("--roi") + 1] == "full"
+    assert commands[0][commands[0].index("--fps") + 1] == "10", "pictures hold no times"
     assert (found["verdict"], found["flags"], found["cpu_s"]) == ("suspect", ["few_points"], 4.0)
     assert found["score"]["registered"] == N
     told = Bench(tmp_path / "out", {"frames.count": "18"})

@@ -8,10 +8,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench import measurements
+from bench import measurements, verdicts
 from bench.mutate import command as mutate
+from bench.real import command as real
 from bench.scenes import command as scenes
-from bench.scenes import darken
+from bench.scenes import variants_command as variants
 from bench.soak import command as soak
 from core.errors import BadInput, BladeAtlasError
 
@@ -47,9 +48,15 @@ def make_parser() -> argparse.ArgumentParser:
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)
-    darken_parser = commands.add_parser("darken", help="cut a video with truth and take its light for some frames")
-    darken.add_arguments(darken_parser)
-    darken_parser.set_defaults(run=darken.command)
+    variants_parser = commands.add_parser("variants", help="run clips made from a clip: fewer frames, dark frames")
+    variants.add_arguments(variants_parser)
+    variants_parser.set_defaults(run=variants.command)
+    verdicts_parser = commands.add_parser("verdicts", help="hold what results say of themselves against the truth")
+    verdicts.add_arguments(verdicts_parser)
+    verdicts_parser.set_defaults(run=verdicts.command)
+    real_parser = commands.add_parser("real", help="run real clips with known cameras beside COLMAP")
+    real.add_arguments(real_parser)
+    real_parser.set_defaults(run=real.command)
     mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
     mutate.add_arguments(mutate_parser)
     mutate_parser.set_defaults(run=mutate.command)

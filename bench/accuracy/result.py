@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,16 +20,22 @@ F64 = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class ResultModel:
-    """One sparse model with its surface, in its own world frame."""
+class Registered:
+    """The registered images of a sparse model, in its own world frame, by the order of their names."""
 
-    number: int
     source_indices: list[int]
     """Source frame of every registered image."""
     centers: F64
     """(n, 3) camera centres."""
     rotations: F64
     """(n, 3, 3) world_from_cam."""
+
+
+@dataclass(frozen=True)
+class ResultModel(Registered):
+    """One sparse model with its surface."""
+
+    number: int
     mesh: Mesh | None
     cloud: Mesh | None
 
@@ -47,7 +54,7 @@ class Result:
 
 def load_result(folder: Path) -> Result:
     """Read a result folder; missing models and mapping files are an outcome, a missing `frames.csv` is `BadInput`."""
-    sources = _source_index_by_name(folder / "frames.csv")
+    sources = source_indices_by_name(folder / "frames.csv")
     models: dict[int, ResultModel] = {}
     roots = {0: folder}
     if (folder / "models").is_dir():
@@ -58,7 +65,8 @@ def load_result(folder: Path) -> Result:
     return Result(models, _rows(folder / "mapping/detections.json"), _rows(folder / "mapping/defects.json"))
 
 
-def _source_index_by_name(path: Path) -> dict[str, int]:
+def source_indices_by_name(path: Path) -> dict[str, int]:
+    """Source frame by image name of a run's `frames.csv`; `BadInput` where it is missing or in another form."""
     if not path.is_file():
         raise BadInput("this is not a result folder: it has no frames.csv", where="frames.csv")
     try:
@@ -67,21 +75,39 @@ def _source_index_by_name(path: Path) -> dict[str, int]:
         raise BadInput(f"frames.csv is not in the expected form: {error!r}", where="frames.csv") from None
 
 
-def _load_model(number: int, root: Path, sources: dict[str, int]) -> ResultModel:
+def read_sparse(folder: Path) -> pycolmap.Reconstruction:
+    """Read COLMAP's files of a sparse model; `BadInput` when they are none."""
     try:
-        model = pycolmap.Reconstruction(root / "sparse")
+        return pycolmap.Reconstruction(folder)
     except (ValueError, RuntimeError) as error:
-        raise BadInput(f"the sparse model {number} cannot be read: {error}", where="sparse") from None
+        raise BadInput(f"the sparse model in {folder.parent.name} cannot be read: {error}", where="sparse") from None
+
+
+def registered(model: pycolmap.Reconstruction, sources: Mapping[str, int]) -> Registered:
+    """Cameras of a sparse model; `sources` gives the source frame of each image name.
+
+    Raises:
+        BadInput: the model has an image that `sources` does not know.
+    """
     images = sorted((model.image(key) for key in model.reg_image_ids()), key=lambda image: str(image.name))
     unknown = [image.name for image in images if image.name not in sources]
     if unknown:
-        raise BadInput(f"image {unknown[0]} of model {number} is not in frames.csv", where="sparse")
+        raise BadInput(f"image {unknown[0]} of the sparse model is not among the frames of the clip", where="sparse")
     world_from_cam = [image.cam_from_world().inverse() for image in images]
-    return ResultModel(
-        number=number,
+    return Registered(
         source_indices=[sources[image.name] for image in images],
         centers=np.array([pose.translation for pose in world_from_cam], np.float64).reshape(-1, 3),
         rotations=np.array([pose.rotation.matrix() for pose in world_from_cam], np.float64).reshape(-1, 3, 3),
+    )
+
+
+def _load_model(number: int, root: Path, sources: Mapping[str, int]) -> ResultModel:
+    cameras = registered(read_sparse(root / "sparse"), sources)
+    return ResultModel(
+        cameras.source_indices,
+        cameras.centers,
+        cameras.rotations,
+        number=number,
         mesh=_surface(root / "dense/mesh_poisson.ply"),
         cloud=_surface(root / "dense/fused.ply"),
     )

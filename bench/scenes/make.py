@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from bench.scenes.blades import HEIGHT_MM, HUB_MM, Row, build_row
 from bench.scenes.detector import Detector, Visible, visible_defects
+from bench.scenes.path import Path as Motion
 from bench.scenes.path import make_path
 from bench.scenes.render import Painter, true_lens
 from bench.scenes.spec import Scene
@@ -30,23 +31,24 @@ PATCH_REACH = 1.1
 MAX_PATCH_POINTS = 300
 
 
-def make_scene(scene: Scene, folder: Path) -> None:
+def make_scene(scene: Scene, folder: Path, motion: Motion | None = None) -> None:
     """Write ``video.mp4``, ``annotations.json``, ``truth/`` and ``scene.json``, whole or not at all.
 
     Args:
         scene: what to render.
         folder: of the scene; an older one is replaced.
+        motion: of the camera, `n_frames` long, in place of the scene's own.
     """
     work = folder.with_name(folder.name + ".part")
     shutil.rmtree(work, ignore_errors=True)
     (work / "truth").mkdir(parents=True)
-    row, path = build_row(scene), make_path(scene)
+    row, path = build_row(scene), motion or make_path(scene)
     kept, times = frame_times(scene)
     seen = _Seen(scene, row)
     entries: dict[str, Any] = {}
     detector = Detector(scene)
     with av.open(str(work / "video.mp4"), "w") as container:
-        stream = _stream(container, scene)
+        stream = video_stream(container, scene.fps, scene.lens.width, scene.lens.height)
         for i, frame in enumerate(Painter(scene, row, path).frames()):
             if i not in kept:
                 continue
@@ -85,9 +87,10 @@ def frame_times(scene: Scene) -> tuple[list[int], list[float]]:
     return kept.tolist(), (ticks * float(TIME_BASE)).tolist()
 
 
-def _stream(container: Any, scene: Scene) -> Any:
-    stream = container.add_stream("libx264", rate=Fraction(scene.fps).limit_denominator(1000))
-    stream.width, stream.height, stream.pix_fmt = scene.lens.width, scene.lens.height, "yuv420p"
+def video_stream(container: Any, fps: float, width: int, height: int) -> Any:
+    """H.264 as the clips of this bench are written; times in `TIME_BASE`."""
+    stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1000))
+    stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
     stream.codec_context.time_base = TIME_BASE
     stream.options = {"crf": "17", "preset": "veryfast", "threads": "1"}
     return stream

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 
 from bench.scenes.blades import HEIGHT_MM, HUB_MM
 from bench.scenes.spec import Scene
@@ -53,6 +54,19 @@ def make_path(scene: Scene) -> Path:
         poses[i, :3, :3] = _looking(target - base) @ Rotation.from_rotvec(0.008 * wobble[i, 3:]).as_matrix()
         poses[i, :3, 3] = center
     return Path(angle, poses)
+
+
+def resampled(path: Path, n_frames: int) -> Path:
+    """The same motion over the same time, told by another number of frames.
+
+    Cubic splines for angle and places, spherical interpolation for directions.
+    """
+    known = np.arange(len(path.rotor_angle), dtype=np.float64)
+    wanted = np.linspace(0.0, known[-1], n_frames)
+    poses = np.tile(np.eye(4), (n_frames, 1, 1))
+    poses[:, :3, :3] = Slerp(known, Rotation.from_matrix(path.world_from_cam[:, :3, :3]))(wanted).as_matrix()
+    poses[:, :3, 3] = CubicSpline(known, path.world_from_cam[:, :3, 3])(wanted)
+    return Path(CubicSpline(known, path.rotor_angle)(wanted), poses)
 
 
 def _sweep(scene: Scene, rng: np.random.Generator) -> F64:

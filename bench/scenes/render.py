@@ -29,6 +29,8 @@ DARK = 0.0001
 """What is left of the light when the lamps are off."""
 LEAST_LIGHT = 0.15
 """The exposure follows the picture down to this much light."""
+TONE = 1.8
+"""A pixel is light to the power of one over this, as cameras write it."""
 BEHIND = 0.012
 """What is seen between the blades: hardly any light comes back from there."""
 
@@ -131,7 +133,7 @@ class Painter:
         scale = 0.42 / max(float(np.percentile(image, 75)), LEAST_LIGHT)
         exposed = np.clip(image * scale, 0.0, None)
         toned = exposed / (1.0 + np.maximum(0.0, exposed - 0.8))
-        noisy = np.clip(toned, 0.0, 1.0) ** (1 / 1.8) + self._rng.normal(scale=self._scene.noise, size=image.shape)
+        noisy = np.clip(toned, 0.0, 1.0) ** (1 / TONE) + self._rng.normal(scale=self._scene.noise, size=image.shape)
         rgb: U8 = np.clip(255.0 * noisy, 0, 255).astype(np.uint8)
         if self._text is not None:
             rgb = np.where(self._text[..., None] > 0, self._text[..., None], rgb)

@@ -13,13 +13,12 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from bench.accuracy.score import score_result
+from bench.kept import Found, kept_or_new, read_found, warnings_of
 from bench.scenes.make import is_made, make_scene
 from bench.scenes.spec import Scene
 from core.errors import StageFailed
-from core.flags import Severity
 
 LIMIT_S = 900.0
 """A run that takes longer is ended and counts as failed."""
@@ -50,57 +49,70 @@ class Bench:
     reuse: bool = False
     """Go on in a kept result folder: what a change of the program does not touch is not computed again."""
 
-    def score(self, scene: Scene, column: Column) -> dict[str, Any]:
+    def score(self, scene: Scene, column: Column) -> Found:
         """The score of a scene, from before when nothing that it depends on has changed."""
-        path = self._path(scene, column)
         key = f"{scene.digest()[:16]}-{_options_key(column)}-{program_digest()[:16]}"
-        known = _read(path)
-        if known.get("key") == key:
-            return known
         source = self.folder / "scenes" / scene.name
-        if not is_made(scene, source):
-            source.parent.mkdir(parents=True, exist_ok=True)
-            make_scene(scene, source)
-        found = {"key": key, "scene": scene.name, "column": column.name, **self._run(scene, column, source)}
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_suffix(".part")
-        part.write_text(json.dumps(found, indent=1, allow_nan=False))
-        part.rename(path)
-        return found
 
-    def known(self, scene: Scene, column: Column) -> dict[str, Any]:
+        def make() -> Found:
+            if not is_made(scene, source):
+                source.parent.mkdir(parents=True, exist_ok=True)
+                make_scene(scene, source)
+            return {"scene": scene.name, "column": column.name, **self._run(scene, column, source)}
+
+        return kept_or_new(self._path(scene, column), key, make)
+
+    def known(self, scene: Scene, column: Column) -> Found:
         """The last score of a scene, by whatever code; empty when there is none."""
-        return _read(self._path(scene, column))
+        return read_found(self._path(scene, column))
 
     def _path(self, scene: Scene, column: Column) -> Path:
         return self.folder / "results" / column.name / f"{scene.name}.json"
 
-    def _run(self, scene: Scene, column: Column, source: Path) -> dict[str, Any]:
+    def _run(self, scene: Scene, column: Column, source: Path) -> Found:
         out = self.folder / "runs" / column.name / scene.name
         if not self.reuse:
             shutil.rmtree(out, ignore_errors=True)
-        whole = not out.exists()
-        command = [sys.executable, "-m", "cli.main", "run", str(source / "video.mp4"), str(source / "annotations.json")]
-        command += ["--out", str(out), "--preset", column.preset, "--roi", ",".join(f"{v:g}" for v in scene.roi)]
-        for name, value in column.options.items():
-            command += ["--set", f"{name}={value}"]
-        began = time.monotonic()
-        code, said = _finished(command)
-        seconds = time.monotonic() - began
-        quality = _read(out / "quality.json")
-        if not quality:
-            raise StageFailed(f"the run of scene {scene.name} left no quality.json: {said[-500:]}", where=scene.name)
-        found = {
-            "seconds": round(seconds, 1) if whole else None,
-            "exit": code,
-            "verdict": quality.get("verdict"),
-            "flags": sorted({flag["code"] for flag in quality.get("flags", ()) if flag["severity"] != Severity.INFO}),
-            "funnel": quality.get("funnel"),
-            "score": score_result(out, source / "truth"),
-        }
+        found = run_and_score(source, scene.roi, column, out)
         if not self.keep:
             shutil.rmtree(out)
         return found
+
+
+def run_and_score(source: Path, roi: Sequence[float], column: Column, out: Path) -> Found:
+    """Run a clip with truth through the command line and score what it left.
+
+    Args:
+        source: folder of `video.mp4`, `annotations.json` and `truth`.
+        roi: as shares of the picture's width and height.
+        column: preset and options.
+        out: result folder; gone on with when it is there.
+
+    Returns:
+        {seconds, exit, verdict, flags, funnel, score}; no time is told where the result folder was there.
+
+    Raises:
+        StageFailed: the run left no `quality.json`.
+    """
+    whole = not out.exists()
+    command = [sys.executable, "-m", "cli.main", "run", str(source / "video.mp4"), str(source / "annotations.json")]
+    command += ["--out", str(out), "--preset", column.preset, "--roi", ",".join(f"{v:g}" for v in roi)]
+    for name, value in column.options.items():
+        command += ["--set", f"{name}={value}"]
+    began = time.monotonic()
+    code, said = _finished(command)
+    seconds = time.monotonic() - began
+    quality = read_found(out / "quality.json")
+    if not quality:
+        raise StageFailed(f"the run of {source.name} left no quality.json: {said[-500:]}", where=source.name)
+    return {
+        "seconds": round(seconds, 1) if whole else None,
+        "exit": code,
+        "verdict": quality.get("verdict"),
+        "flags": warnings_of(quality),
+        "funnel": quality.get("funnel"),
+        "score": score_result(out, source / "truth"),
+    }
 
 
 def _finished(command: Sequence[str]) -> tuple[int, str]:
@@ -129,11 +141,3 @@ def program_digest() -> str:
         for path in sorted((root / package).rglob("*.py")):
             digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
-
-
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        found: dict[str, Any] = json.loads(path.read_text())
-    except (OSError, ValueError):
-        return {}
-    return found

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, isinf
 from statistics import median
-from typing import Any
 
+from bench.kept import Found, markdown_table
 from bench.scenes.pooled import right_share
 from bench.scenes.spec import Scene
 from core.flags import Verdict
@@ -25,7 +25,6 @@ HEAD = (
     "AUROC",
     "s",
 )
-Found = dict[str, Any]
 
 
 def chord_mm(scene: Scene) -> float:
@@ -98,9 +97,7 @@ def _median(scenes: Sequence[Scene], found: Sequence[Found]) -> list[str]:
 
 def markdown(scenes: Sequence[Scene], found: Sequence[Found]) -> str:
     """The table as text."""
-    lines = ["| " + " | ".join(HEAD) + " |", "| " + " | ".join("---" for _ in HEAD) + " |"]
-    lines += ["| " + " | ".join(row) + " |" for row in rows(scenes, found)]
-    return "\n".join(lines)
+    return markdown_table(HEAD, rows(scenes, found))
 
 
 def _share(scene: Scene, value: float | None) -> float | None:

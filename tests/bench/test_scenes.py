@@ -13,7 +13,6 @@ from plyfile import PlyData
 from bench.accuracy.truth import load_truth
 from bench.main import main
 from bench.scenes.blades import build_row, surface_point
-from bench.scenes.darken import GAMMA, darkened
 from bench.scenes.detector import Detector, Visible
 from bench.scenes.make import frame_times, is_made, make_scene
 from bench.scenes.path import make_path
@@ -163,27 +162,3 @@ def test_the_table_has_a_row_for_every_scene_and_the_median() -> None:
     assert "| easy | ok | 100.0 % | 90.0 % of 10 | 1.0 / 2.0 | 0.0 % | 90.0 % | 3 of 4 / 0 / 1 |" in text[2]
     assert "refused (no_parallax): as expected" in text[3]
     assert "**median scene**" in text[4]
-
-
-def test_a_dark_picture_keeps_its_share_of_the_light_and_the_noise() -> None:
-    picture = np.full((50, 50, 3), 200, np.uint8)
-    dim = darkened(picture, 0.2, np.random.default_rng(0))
-    assert (dim.mean() / 200.0) ** GAMMA == pytest.approx(0.2, rel=0.03)
-    assert dim.std() > 1.0
-    assert darkened(picture, 0.0, np.random.default_rng(0)).max() < 15
-    assert (dim == darkened(picture, 0.2, np.random.default_rng(0))).all()
-
-
-def test_the_cut_is_dark_in_its_middle_and_keeps_the_truth_of_its_frames(made: Path, tmp_path: Path) -> None:
-    cut = ["--start", "1", "--frames", "4", "--dark", "2", "--light", "0.01"]
-    assert main(["darken", str(made), str(tmp_path / "cut"), *cut]) == 0
-    light = [rgb.mean() for *_, rgb in iter_frames(made / "video.mp4")]
-    shown = [rgb.mean() for *_, rgb in iter_frames(tmp_path / "cut" / "video.mp4")]
-    assert len(shown) == 4
-    for row, mean in enumerate(shown):
-        assert mean == pytest.approx(light[row + 1] * (0.01 ** (1 / GAMMA) if row in (1, 2) else 1.0), rel=0.1)
-    whole, part = load_truth(made / "truth"), load_truth(tmp_path / "cut" / "truth")
-    assert np.allclose(part.centers, whole.centers[1:5])
-    keys = json.loads((tmp_path / "cut" / "annotations.json").read_text())
-    assert [round(float(key) * TINY.fps) for key in keys] == [0, 3]
-    assert main(["darken", str(made), str(tmp_path / "no"), *cut[:2], "--frames", "90", *cut[4:]]) == 2

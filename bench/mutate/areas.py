@@ -57,6 +57,7 @@ AREAS: Mapping[str, Area] = {
             "tests/core/test_graph.py",
             "tests/core/test_stage_settings.py",
             "tests/store/test_graph.py",
+            "tests/store/test_leasing.py",
             "tests/store/test_plan.py",
         ),
     ),

@@ -5,11 +5,9 @@ import pycolmap
 import pytest
 from numpy.typing import NDArray
 
-from core.settings.groups import MapperSettings
-from core.sparse.cases import Case
 from core.sparse.points import Observations, errors_px, move_points, observe
 from core.sparse.trimming import set_lens, solve
-from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
+from tests.core.sparse.scene import make_scene, true_model
 
 F64 = NDArray[np.float64]
 
@@ -18,11 +16,9 @@ OFF = 0.02
 
 
 @pytest.fixture(scope="module")
-def mapped(tmp_path_factory: pytest.TempPathFactory) -> pycolmap.Reconstruction:
+def mapped() -> pycolmap.Reconstruction:
     """A model of 12 images."""
-    scene = make_scene(12)
-    graph = write_graph(tmp_path_factory.mktemp("points") / "graph", scene, view_graph(scene))
-    return model_of(Case(graph, 0, 12, MapperSettings(search_tracks=0), 0))
+    return true_model(make_scene(12))
 
 
 @pytest.fixture(params=[1, 2, 4])

@@ -10,6 +10,7 @@ import pytest
 
 from core.mapping.observations import Observation
 from core.mapping.surface_rules import place_on_surface
+from core.scene.defect import Extent
 from core.timeline.defects import Defect, Found, defect_records, event_rows, find_defects
 from core.timeline.instances import existence, fused_place, group_observations
 from tests.core import making_plates as plates
@@ -48,11 +49,16 @@ def test_an_event_lasts_from_its_first_detection_to_its_last() -> None:
 def test_the_extent_is_a_diameter_with_the_spread_of_its_detections() -> None:
     """1.4826 times the median distance from the median is the standard deviation of a normal distribution."""
     own = [observation(k, 0.0, radius) for k, radius in enumerate((0.1, 0.15, 0.3, 0.35, 2.0))]
-    extent = defect_records(found_of(own, []), [], [[]], 0)[0].extent
-    assert extent.value == pytest.approx(0.6)
-    assert extent.sigma == pytest.approx(1.4826 * 0.3)
-    assert defect_records(found_of(own[:2], []), [], [[]], 0)[0].extent.sigma is None
-    assert defect_records(found_of(own[:3], []), [], [[]], 0)[0].extent.sigma == pytest.approx(1.4826 * 0.1)
+
+    def extent(count: int) -> Extent:
+        (record,) = defect_records(found_of(own[:count], []), [], [[]], 0)
+        assert record.extent is not None
+        return record.extent
+
+    assert extent(5).value == pytest.approx(0.6)
+    assert extent(5).sigma == pytest.approx(1.4826 * 0.3)
+    assert extent(3).sigma == pytest.approx(1.4826 * 0.1)
+    assert extent(2).sigma is None
 
 
 def test_equally_sure_places_give_their_mean_and_its_error() -> None:

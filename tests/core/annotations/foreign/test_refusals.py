@@ -132,3 +132,12 @@ def test_the_key_of_a_time_keeps_its_nanoseconds(seconds: float, key: str) -> No
 def test_nothing_on_a_picture_is_a_picture_without_detections(make: Callable[[], object]) -> None:
     annotations = read(make())
     assert [len(entry.detections) for entry in annotations.entries] == [0]
+
+
+@pytest.mark.parametrize("labels", [[], [5], None, "x", [[]]])
+def test_a_region_without_a_label_is_counted(labels: object) -> None:
+    region = {"x": 50, "y": 50, "width": 20, "height": 10, "rectanglelabels": labels}
+    size = {"original_width": 96, "original_height": 72}
+    annotations = read([{"image": "/data/upload/1/ab-frame_7.png", "label": [{**region, **size}]}], (96, 72))
+    assert annotations.detections == ()
+    assert annotations.warnings == ("1 shape without a label is not read",)

@@ -95,6 +95,28 @@ def test_points_end_where_a_bundle_adjuster_puts_them(disturbed: pycolmap.Recons
         assert model.image(image_id).cam_from_world() == disturbed.image(image_id).cam_from_world()
 
 
+@pytest.mark.parametrize("loss_px", [1.0, 100.0])
+def test_rays_that_meet_bring_their_points_back(mapped: pycolmap.Reconstruction, loss_px: float) -> None:
+    """Newton's method doubles the digits at each step: only the right derivative and the right solution get there."""
+    model = pycolmap.Reconstruction(mapped)
+    set_lens(model, 4)
+    params = np.array(model.camera(1).params)
+    params[model.camera(1).extra_params_idxs()] = DISTORTION[4]
+    model.camera(1).params = list(params)
+    for point in model.points3D.values():
+        for element in point.track.elements:
+            image = model.image(element.image_id)
+            image.points2D[element.point2D_idx].xy = pixel(image, point.xyz)
+    seen = observe(model)
+    expected = places(model, seen)
+    rng = np.random.default_rng(0)
+    for point_id, place in zip(seen.point_ids.tolist(), expected, strict=True):
+        model.point3D(point_id).xyz = place + 0.2 * OFF * rng.normal(size=3)
+    errors = move_points(model, seen, loss_px)
+    assert errors.max() < 1e-6
+    assert places(model, seen) == pytest.approx(expected, abs=1e-7)
+
+
 def test_one_observation_that_is_off_hardly_moves_a_point(mapped: pycolmap.Reconstruction) -> None:
     model = pycolmap.Reconstruction(mapped)
     point_id = max(model.point3D_ids(), key=lambda i: model.point3D(i).track.length())

@@ -1,4 +1,4 @@
-"""What a foreign file must hold: values of a wrong number are refused with their place, limits are where they are said."""
+"""What a foreign file must hold: a wrong number of values is refused with its place, limits are where they are said."""
 
 from __future__ import annotations
 

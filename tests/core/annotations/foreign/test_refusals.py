@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 
 import pytest
 
+from core.annotations.foreign.bitmaps import row_outlines
 from core.annotations.foreign.formats import FORMATS
 from core.annotations.foreign.sheet import seconds_key
 from core.annotations.foreign.unreadable import looks_like_video
@@ -56,6 +57,12 @@ def test_a_mask_of_cvat_lies_between_its_corners() -> None:
     (detection,) = read(cvat("mask", [*runs, 30, 40, 32, 41]), (96, 72)).detections
     assert detection.box == pytest.approx((31 / 96, 40 / 72, 33 / 96, 42 / 72), abs=0.51 / 72)
     assert detection.polygon is not None
+
+
+def test_unpacking_a_mask_costs_its_pixels() -> None:
+    spent: list[int] = []
+    row_outlines([7, 3, 11], 3, 7, (0.0, 0.0), spent.append)
+    assert spent == [21]
 
 
 @pytest.mark.parametrize("value", [None, [], {}, 12, "text", [[]], {"a": {}}, [{"a": 1}]])

@@ -49,6 +49,7 @@ PLACED = [{"id": 0, "key": "0.0", "time_s": 0.0, "label": "dent", "box": [0, 0, 
         (b'[{"a": 1}]', "a JSON list of another kind", ""),
         (b"12", "JSON that is neither an object nor a list, but 12", ""),
         (b"A letter.", "text of another kind, no JSON and no XML", ""),
+        (zipped({"a.md": "text", "b.txt": "A letter."}), "an archive that holds no annotations (1 md, 1 txt)", ""),
         (zipped({"a.md": "text", "b.md": "text"}), "an archive that holds no annotations (2 md)", ""),
     ],
 )

@@ -30,7 +30,7 @@ class AccountFile:
 
     inspection_id: str
     path: str
-    """Within the inspection: of the contract of outputs, or ``inputs/video`` and ``inputs/annotations``; of further videos
+    """Within the inspection: of the contract of outputs, or ``inputs/video`` and ``inputs/annotations``; of further ones
     ``inputs/1/video`` and so on, by their number."""
     key: str
     """Where it lies in the artifact store."""

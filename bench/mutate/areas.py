@@ -36,11 +36,11 @@ AREAS: Mapping[str, Area] = {
     ),
     "defects": Area(
         ("core/timeline", "core/stages/timeline.py"),
-        ("tests/core/timeline", "tests/core/test_mapping_stages.py"),
+        ("tests/core/timeline", "tests/core/test_surface_stages.py", "tests/core/test_mapping_stages.py"),
     ),
     "placement": Area(
         ("core/mapping", "core/stages/map_defects.py"),
-        ("tests/core/mapping", "tests/core/test_mapping_stages.py"),
+        ("tests/core/mapping", "tests/core/test_surface_stages.py", "tests/core/test_mapping_stages.py"),
     ),
     "thesis": Area(("core/thesis",), ("tests/core/thesis", "tests/core/test_mapping_stages.py")),
     "scene": Area(("core/scene", "core/io"), ("tests/core/scene", "tests/core/io")),
@@ -57,6 +57,7 @@ AREAS: Mapping[str, Area] = {
             "tests/core/test_graph.py",
             "tests/core/test_stage_settings.py",
             "tests/store/test_graph.py",
+            "tests/store/test_leasing.py",
             "tests/store/test_plan.py",
         ),
     ),

@@ -11,7 +11,6 @@ import pytest
 from plyfile import PlyData
 
 from bench.accuracy.truth import load_truth
-from bench.main import main
 from bench.scenes.blades import build_row, surface_point
 from bench.scenes.detector import Detector, Visible
 from bench.scenes.make import frame_times, is_made, make_scene

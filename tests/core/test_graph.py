@@ -13,7 +13,7 @@ from core.errors import StageFailed
 from core.graph import STAGES, expand
 from core.settings import make_settings
 from core.stage import Facts, StageTask
-from core.task_key import stage_of
+from core.task_key import piece_of, stage_of
 
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
 SEARCHED: dict[str, Facts] = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
@@ -55,6 +55,10 @@ def test_chunks_cover_every_frame_and_view_once() -> None:
     frames = [dict(task.args) for key, task in tasks.items() if key.startswith("features/")]
     assert [frames[0]["start"], frames[-1]["end"]] == [0, 200]
     assert all(one["end"] == after["start"] for one, after in pairwise(frames))
+    assert [dict(task.args) for key, task in tasks.items() if key.startswith("matches/")] == frames
+    assert [dict(tasks[f"geometric/{i:03d}"].args) for i in range(3)] == [
+        dict(tasks[f"depth/{i:03d}"].args) for i in range(3)
+    ]
 
 
 def test_the_plan_only_grows() -> None:
@@ -90,7 +94,10 @@ def test_the_gallery_waits_until_the_further_models_are_known() -> None:
     assert {"timeline", "timeline@1", "timeline@2"} <= set(tasks["gallery"].depends)
     assert tasks["timeline@2"].args == {"piece": 2}
     assert {"timeline", "timeline@1"} <= set(tasks["timeline@2"].depends)
-    assert all(task.optional for key, task in tasks.items() if "@" in key)
+    further = [task for task in tasks.values() if piece_of(task.key)]
+    assert {piece_of(task.key) for task in further} == {1, 2}
+    assert all(task.optional and task.args["piece"] == piece_of(task.key) for task in further)
+    assert "timeline@1" not in keys({**DENSE, "pieces": {"n_pieces": 0}})
 
 
 def test_a_task_of_a_further_model_reads_its_own_models_results_first(tmp_path: Path) -> None:

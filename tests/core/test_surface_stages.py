@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2  # noqa: F401  (before pycolmap)
@@ -56,8 +57,10 @@ def _write(path: Path, value: object) -> None:
     path.write_text(json.dumps(value), encoding="utf-8")
 
 
-def run_both(inputs: Path, out: Path, codes: tuple[str, ...] = ()) -> dict[str, Facts]:
-    """With warnings of the checks of the model."""
+def run_both(
+    inputs: Path, out: Path, codes: tuple[str, ...] = (), told: dict[str, list[tuple[float, str]]] | None = None
+) -> dict[str, Facts]:
+    """With warnings of the checks of the model; what the stages report goes to `told`."""
     folders = {path.name: path for path in inputs.iterdir()}
     facts: dict[str, Facts] = {"extend": {"checks": [Flag(code, Severity.WARNING).to_dict() for code in codes]}}
     for name, stage in (("map_defects", map_defects), ("timeline", timeline)):
@@ -65,7 +68,12 @@ def run_both(inputs: Path, out: Path, codes: tuple[str, ...] = ()) -> dict[str, 
         folders[name].mkdir(parents=True)
         settings = make_settings("default")
         task = StageTask(name, {}, settings, dict(folders), dict(facts), (Recording(inputs / "none"),), folders[name])
-        facts[name] = stage.run(task).facts
+        own: list[tuple[float, str]] = [] if told is None else told.setdefault(name, [])
+
+        def note(share: float, message: str, own: list[tuple[float, str]] = own) -> None:
+            own.append((share, message))
+
+        facts[name] = stage.run(replace(task, progress=note)).facts
     return facts
 
 
@@ -113,3 +121,14 @@ def test_the_same_input_gives_the_same_bytes(inputs: Path, tmp_path: Path) -> No
         files = sorted(path for path in (tmp_path / name).rglob("*") if path.is_file())
         digests.append([hashlib.sha256(path.read_bytes()).hexdigest() for path in files])
     assert digests[0] == digests[1]
+
+
+def test_a_stage_says_what_it_does_and_how_far_it_is(inputs: Path, tmp_path: Path) -> None:
+    told: dict[str, list[tuple[float, str]]] = {}
+    run_both(inputs, tmp_path, told=told)
+    for name, first in (("map_defects", 0.0), ("timeline", 0.25)):
+        shares, messages = zip(*told[name], strict=True)
+        assert (shares[0], shares[-1]) == (first, 1.0)
+        assert len(shares) == 4
+        assert list(shares) == sorted(set(shares)), "every step is further than the one before"
+        assert len(set(messages) - {""}) == 4, "and has its own words"

@@ -19,7 +19,9 @@ def name_of(stage: str) -> str:
     return CORE_GRAPH.fingerprint(task, make_settings("draft"), {}, [InputFiles("v", "v" * 64, None, None)])
 
 
-@pytest.mark.parametrize(("stage", "uses"), [("features", True), ("matches", True), ("depth", False)])
+@pytest.mark.parametrize(
+    ("stage", "uses"), [("features", True), ("matches", True), ("bridge", True), ("depth", False), ("extend", False)]
+)
 def test_other_weights_make_another_result(stage: str, uses: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     before = name_of(stage)
     monkeypatch.setattr(store.graph, "weights_digest", lambda name: f"another {name}")

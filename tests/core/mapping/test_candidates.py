@@ -37,3 +37,16 @@ def test_sparse_points_before_a_patch_overrule_it_unless_maps_or_views_show_it_t
     assert chosen([candidate(sparse=0.1)], [6], [2]) == {}
     assert chosen([candidate(sparse=0.1)], [6], [4]) == {0: (0, float("inf"))}
     assert chosen([candidate(sparse=0.1, depth=0.8)], [6], [2]) == {0: (0, float("inf"))}
+
+
+def test_a_fifth_of_the_points_on_a_patch_is_enough() -> None:
+    assert chosen([candidate(sparse=0.2)], [6], [2]) == {0: (0, float("inf"))}
+    assert chosen([candidate(sparse=0.199)], [6], [2]) == {}
+    assert chosen([candidate(sparse=0.1)], [6], [3]) == {}, "no more than half of the views"
+
+
+def test_the_nearer_of_two_that_as_much_speaks_for_is_meant() -> None:
+    """What is seen through a nick may lie under most of its pixels."""
+    rows = [candidate(0.8, nearest=False), candidate(0.1)]
+    assert {detection: row for detection, (row, _) in chosen(rows, [8, 8], [4, 4]).items()} == {0: 1}
+    assert {detection: row for detection, (row, _) in chosen(rows, [8, 8], [8, 4]).items()} == {0: 0}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.mapping.pixels import MIN_CELLS, SHRINK, footprint, in_polygon
+from core.mapping.pixels import CELLS, MIN_CELLS, SHRINK, footprint, in_polygon
 
 
 def test_a_box_is_sampled_by_the_ellipse_in_it() -> None:
@@ -38,6 +38,16 @@ def test_a_mask_is_sampled_inside_only() -> None:
     assert np.ptp(along.xy[:, 0]) > 40
     assert np.abs(along.xy[:, 1] - 10.001).max() < 0.01
     assert len(np.unique(along.cell, axis=0)) == len(along.cell)
+
+
+def test_a_mask_thinner_than_the_grid_is_sampled_along_its_outline() -> None:
+    found = footprint((0.0, 0.0, 100.0, 100.0), 100, 100, [(10.0, 10.0), (60.0, 30.0), (60.0, 30.01)])
+    assert len(np.unique(found.cell, axis=0)) == len(found.cell)
+    assert (set(found.cell[:, 0]), set(found.cell[:, 1])) == (set(range(CELLS)), set(range(MIN_CELLS)))
+    along = (found.xy - (10, 10)) / (50, 20)
+    assert ((along > 0) & (along <= 1)).all()
+    assert along[:, 0] == pytest.approx(along[:, 1], abs=0.001), "every sample lies on the outline"
+    assert (np.floor(along * (CELLS, MIN_CELLS) - 1e-9) == found.cell).all(), "and in its cell"
 
 
 def test_even_odd_rule() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -93,6 +95,7 @@ def test_without_surface_the_depth_map_then_the_sparse_points_give_an_estimate()
     one = [detection(0, ON_NEAR, 3)]
     depth = plates.depth_maps_of(plates.plates(), [3])
     by_depth = placed(one, mesh=hole, depth=depth)[0]
+    assert len(by_depth.points) == len(by_depth.point_ids) == 0, "no surface was met"
     assert (by_depth.row.outcome, by_depth.row.reason, by_depth.row.rung) == ("approximate", "off_surface", "depth")
     assert xyz(by_depth) == pytest.approx(ON_NEAR, abs=0.05)
     points = np.array(ON_NEAR) + np.array([[0.05, 0, 0], [-0.05, 0.02, 0], [0, -0.05, 0.01], [0, 0, FAR - NEAR]])
@@ -167,6 +170,21 @@ def test_a_blade_that_came_out_turned_is_a_place_where_witnesses_say_so() -> Non
         assert one.normal == pytest.approx((0, 0, -1), abs=1e-6)
         assert one.parts is not None
         assert one.parts.support == len(detections) - 1
+
+
+def test_a_normal_does_not_depend_on_which_way_its_faces_are_turned() -> None:
+    """A roof, its ridge under the box; the half that the camera is nearer to came out turned."""
+    flat = plates.plate((-1.6, 0.0), (-0.6, 1.0), NEAR)
+    away = np.abs(flat.vertices[:, :1] - ON_NEAR[0]) * [0.0, 0.0, 0.5]
+    roof = replace(flat, vertices=flat.vertices + away)
+    right = roof.vertices[roof.faces].mean(axis=1)[:, 0] > ON_NEAR[0]
+    half = replace(roof, faces=np.where(right[:, None], roof.faces[:, ::-1], roof.faces))
+    depth = plates.depth_maps_of(roof, [6, 8, 9])
+    whole, mixed = (placed([detection(0, ON_NEAR, 8)], mesh=mesh, depth=depth)[0] for mesh in (roof, half))
+    assert mixed.parts is not None
+    assert mixed.parts.share == pytest.approx(1.0), "both halves are one patch"
+    assert mixed.normal == pytest.approx(whole.normal, abs=1e-6)
+    assert whole.normal[2] < -0.9
 
 
 def test_a_frame_without_pose_is_placed_between_its_neighbours_or_not_at_all() -> None:

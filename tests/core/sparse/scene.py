@@ -13,6 +13,9 @@ from core.features.io import FrameFeatures
 from core.matched_pair import MUTUAL_NEAREST, MatchedPair
 from core.settings import make_settings
 from core.sparse.cases import Case, CaseResult, run_case
+from core.sparse.tracks import Tracks
+from core.sparse.triangulation import add_track_points
+from core.sparse.view_graph import Frames
 from core.verification import CameraFields, Verifier, camera_from_dict
 from core.viewgraph import PairTable, make_table, write_database, write_table
 
@@ -52,7 +55,7 @@ def make_scene(
         center = np.array([step * frame, 0.15 * np.sin(frame / 4) * (step > 0), 0.2 * np.sin(frame / 6) * (step > 0)])
         aside = (center - points) * [1.0, 1.0, 0.0]
         moved = points + (follow * (aside**2).sum(axis=1))[:, None] * aside
-        xy = project((moved - center) @ _turn(0.15 * np.sin(frame / 5), 0.01 * frame).T)
+        xy = project((moved - center) @ turn_of(frame).T)
         visible = np.flatnonzero(((xy > 0) & (xy < [WIDTH, HEIGHT])).all(axis=1))
         visible = rng.permutation(visible)
         keypoints = (xy[visible] + rng.normal(0, noise_px, (len(visible), 2))).astype(np.float32)
@@ -111,6 +114,26 @@ def found_in(result: CaseResult) -> pycolmap.Reconstruction:
     return result.model
 
 
+def true_model(scene: Scene) -> pycolmap.Reconstruction:
+    """The true poses, and the points that the rays of at least three keypoints of one true point meet in."""
+    camera = camera_from_dict(LENS)
+    model = pycolmap.Reconstruction()
+    model.add_camera_with_trivial_rig(camera)
+    keypoints = tuple(features.keypoints.astype(np.float64) for features in scene.features)
+    indices, names = tuple(range(len(keypoints))), tuple(f"{i:04d}.jpg" for i in range(len(keypoints)))
+    for i, (xy, center) in enumerate(zip(keypoints, scene.centers, strict=True)):
+        R = turn_of(i)
+        image = pycolmap.Image(name=names[i], keypoints=xy, camera_id=1, image_id=i + 1)
+        model.add_image_with_trivial_frame(image, pycolmap.Rigid3d(np.column_stack([R, -R @ center])))
+    point = np.concatenate(scene.point)
+    frame = np.repeat(indices, [len(own) for own in scene.point])
+    keypoint = np.concatenate([np.arange(len(own)) for own in scene.point])
+    order = np.lexsort((frame, point))
+    offsets = np.concatenate([[0], np.cumsum(np.unique(point, return_counts=True)[1])])
+    add_track_points(model, Tracks(offsets, frame[order], keypoint[order]), Frames(indices, names, keypoints, camera))
+    return model
+
+
 def center_errors(model: pycolmap.Reconstruction, scene: Scene) -> npt.NDArray[np.float64]:
     """Distances of the registered camera centres to the true ones after the best similarity, sorted by image id."""
     ids = sorted(model.reg_image_ids())
@@ -124,7 +147,9 @@ def center_errors(model: pycolmap.Reconstruction, scene: Scene) -> npt.NDArray[n
     return errors
 
 
-def _turn(yaw: float, pitch: float) -> npt.NDArray[np.float64]:
+def turn_of(frame: int) -> npt.NDArray[np.float64]:
+    """(3, 3) cam_from_world of a frame."""
+    yaw, pitch = 0.15 * np.sin(frame / 5), 0.01 * frame
     cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
     pitched = np.array([[1, 0, 0], [0, cp, -sp], [0, sp, cp]])
     return np.asarray(pitched @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]]), np.float64)

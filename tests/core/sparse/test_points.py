@@ -5,11 +5,9 @@ import pycolmap
 import pytest
 from numpy.typing import NDArray
 
-from core.settings.groups import MapperSettings
-from core.sparse.cases import Case
 from core.sparse.points import Observations, errors_px, move_points, observe
 from core.sparse.trimming import set_lens, solve
-from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
+from tests.core.sparse.scene import make_scene, true_model
 
 F64 = NDArray[np.float64]
 
@@ -18,11 +16,9 @@ OFF = 0.02
 
 
 @pytest.fixture(scope="module")
-def mapped(tmp_path_factory: pytest.TempPathFactory) -> pycolmap.Reconstruction:
+def mapped() -> pycolmap.Reconstruction:
     """A model of 12 images."""
-    scene = make_scene(12)
-    graph = write_graph(tmp_path_factory.mktemp("points") / "graph", scene, view_graph(scene))
-    return model_of(Case(graph, 0, 12, MapperSettings(search_tracks=0), 0))
+    return true_model(make_scene(12))
 
 
 @pytest.fixture(params=[1, 2, 4])
@@ -97,6 +93,28 @@ def test_points_end_where_a_bundle_adjuster_puts_them(disturbed: pycolmap.Recons
     assert errors.mean() <= 1.001 * errors_px(theirs, seen).mean()
     for image_id in model.reg_image_ids():
         assert model.image(image_id).cam_from_world() == disturbed.image(image_id).cam_from_world()
+
+
+@pytest.mark.parametrize("loss_px", [1.0, 100.0])
+def test_rays_that_meet_bring_their_points_back(mapped: pycolmap.Reconstruction, loss_px: float) -> None:
+    """Newton's method doubles the digits at each step: only the right derivative and the right solution get there."""
+    model = pycolmap.Reconstruction(mapped)
+    set_lens(model, 4)
+    params = np.array(model.camera(1).params)
+    params[model.camera(1).extra_params_idxs()] = DISTORTION[4]
+    model.camera(1).params = list(params)
+    for point in model.points3D.values():
+        for element in point.track.elements:
+            image = model.image(element.image_id)
+            image.points2D[element.point2D_idx].xy = pixel(image, point.xyz)
+    seen = observe(model)
+    expected = places(model, seen)
+    rng = np.random.default_rng(0)
+    for point_id, place in zip(seen.point_ids.tolist(), expected, strict=True):
+        model.point3D(point_id).xyz = place + 0.2 * OFF * rng.normal(size=3)
+    errors = move_points(model, seen, loss_px)
+    assert errors.max() < 1e-6
+    assert places(model, seen) == pytest.approx(expected, abs=1e-7)
 
 
 def test_one_observation_that_is_off_hardly_moves_a_point(mapped: pycolmap.Reconstruction) -> None:

@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from core.sparse.tracks import build_tracks, choose_keypoints, thin_cache
+from core.sparse.tracks import GRID, Tracks, build_tracks, choose_keypoints, thin_cache
 from core.sparse.view_graph import Frames, within
 from core.verification import camera_from_dict
 from core.viewgraph import PairTable
@@ -50,6 +51,17 @@ def test_a_track_never_holds_two_keypoints_of_one_frame() -> None:
     assert listed(graph) == [[(0, 0), (1, 0), (2, 0)]]
 
 
+@pytest.mark.parametrize("frame", [1, 62, 63, 64, 65, 127, 128])
+def test_a_track_of_many_frames_holds_no_two_keypoints_of_any(frame: int) -> None:
+    """Frames are kept as bits of words of 64."""
+    chain = {(i, i + 1): [(0, 0)] for i in range(130)}
+    assert listed(table(chain)) == [[(i, 0) for i in range(131)]]
+    other = {(0, frame): [(0, 9)]} if frame > 1 else {(1, 3): [(9, 0)]}
+    assert listed(table({**chain, **other})) == [[(i, 0) for i in range(131)]]
+    alone = {(frame, frame + 2): [(9, 9)]}
+    assert listed(table({**chain, **alone})) == [[(i, 0) for i in range(131)], [(frame, 9), (frame + 2, 9)]]
+
+
 def test_no_matches_give_no_tracks() -> None:
     assert listed(table({})) == []
 
@@ -80,6 +92,25 @@ def test_chosen_keypoints_are_few_spread_and_connected() -> None:
     cache = thin_cache(graph, frames, chosen, 15)
     assert cache.num_images() == 10
     assert cache.correspondence_graph.num_image_pairs() == len(graph.pairs)
+
+
+def test_as_many_keypoints_come_from_every_cell_of_the_frame() -> None:
+    """Of three frames with four tracks in each cell, every cell gives as many as are wanted: its first ones."""
+    columns, rows = GRID
+    cells = [(x, y) for y in range(rows) for x in range(columns)]
+    places = [((x + 0.2 + 0.2 * k) * WIDTH / columns, (y + 0.5) * HEIGHT / rows) for k in range(4) for x, y in cells]
+    xy = np.array(places)
+    frames = Frames((4, 7, 9), ("a", "b", "c"), (xy, xy[::-1].copy(), xy), camera_from_dict(LENS))
+    n = len(xy)
+    frame = np.tile([4, 7, 9], n)
+    keypoint = np.column_stack([np.arange(n), n - 1 - np.arange(n), np.arange(n)]).ravel()
+    tracks = Tracks(3 * np.arange(n + 1), frame, keypoint)
+    for wanted in (1, 2):
+        chosen = choose_keypoints(tracks, frames, wanted * len(cells))
+        assert chosen[4].tolist() == chosen[9].tolist() == list(range(wanted * len(cells))), "the first tracks"
+        assert chosen[7].tolist() == [n - 1 - k for k in range(wanted * len(cells))][::-1]
+    everything = choose_keypoints(tracks, frames, 4 * len(cells))
+    assert all(len(own) == n for own in everything.values())
 
 
 def test_the_thin_cache_keeps_places_and_matches() -> None:

@@ -265,7 +265,7 @@ def test_via_2_takes_polygons_and_finds_the_label() -> None:
 
 
 def test_via_3_takes_chosen_options_and_pictures() -> None:
-    project = {
+    project: dict[str, Any] = {
         "project": {},
         "attribute": {"1": {"aname": "kind", "options": {"0": "nick", "1": "dent"}}},
         "file": {"7": {"fname": "f_12.png", "type": 2}},
@@ -279,6 +279,10 @@ def test_via_3_takes_chosen_options_and_pictures() -> None:
     (detection,) = annotations.detections
     assert (detection.key, detection.label, detection.box) == ("12", "dent", (0, 0, 0.5, 0.5))
     assert annotations.warnings == ("1 circle is not read",)
+    # An attribute that the project does not declare is known by its number, in the order of these.
+    spots = [{**project["metadata"]["a"], "av": values} for values in ({"9": "nick"}, {"2": "dent", "3": "nick"})]
+    undeclared = {**project, "attribute": {}, "metadata": dict(zip("ab", spots, strict=True))}
+    assert [one.label for one in read(undeclared).detections] == ["nick", "dent"]
 
 
 def test_datumaro_counts_what_is_no_region() -> None:

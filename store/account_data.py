@@ -30,8 +30,10 @@ class AccountFile:
 
     inspection_id: str
     path: str
-    """Within the inspection: of the contract of outputs, or ``inputs/video`` and ``inputs/annotations``; of further ones
-    ``inputs/1/video`` and so on, by their number."""
+    """Within the inspection: of the contract of outputs, or ``inputs/video`` and ``inputs/annotations``.
+
+    Those of further videos are ``inputs/1/video`` and so on, by their number.
+    """
     key: str
     """Where it lies in the artifact store."""
 

@@ -21,6 +21,7 @@ from typing import NotRequired, TypedDict
 from core.annotations.foreign.unreadable import looks_like_video
 from core.annotations.load import load_annotations
 from core.errors import BadInput, BladeAtlasError
+from core.geometry.lens import scale_to
 from core.roi import crop_of
 from core.settings import Settings
 from core.settings.groups import RoiSettings
@@ -51,6 +52,8 @@ class Question(TypedDict):
     annotation_format: NotRequired[str]
     roi: dict[str, float]
     """Shares of the frame: x0, y0, x1, y1."""
+    calibration_size: NotRequired[tuple[int, int] | None]
+    """Width and height of the picture that a calibration is of, px."""
     limits: NotRequired[LimitFields]
 
 
@@ -81,6 +84,8 @@ def check_input(video: Path, annotations: Path | None, settings: Settings) -> No
     found = _checked(video, annotations, settings.input.video_stream, PIXELS_ONLY, settings.input.fps)
     if annotations is not None:
         load_annotations(annotations, (found["width"], found["height"]), settings.input.annotation_format)
+    if settings.camera.size_px is not None:
+        scale_to(settings.camera.size_px, found["width"], found["height"])
     check_roi(settings)
 
 
@@ -167,7 +172,7 @@ def answer(question: Question) -> Answer:
 
     Args:
         question: ``video`` and optionally ``annotations`` (paths), ``annotation_format``, ``video_stream``, ``fps``,
-            ``roi`` (shares), ``limits`` (`VideoLimits`).
+            ``roi`` (shares), ``calibration_size``, ``limits`` (`VideoLimits`).
 
     Returns:
         ``{"video": {...}, "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
@@ -177,6 +182,9 @@ def answer(question: Question) -> Answer:
         path = None if given is None else Path(given)
         limits = VideoLimits(**question.get("limits", {}))
         found = _checked(Path(question["video"]), path, question.get("video_stream"), limits, question.get("fps"))
+        size = question.get("calibration_size")
+        if size is not None:
+            scale_to(size, found["width"], found["height"])
         crop_of(RoiSettings(**question["roi"]), found["width"], found["height"])
         frame = (found["width"], found["height"])
         annotations = load_annotations(path, frame, question.get("annotation_format", "auto"))

@@ -122,7 +122,8 @@ def preset_values(preset: str) -> dict[str, object]:
 def make_settings(preset: str = "default", options: Mapping[str, object] | None = None) -> Settings:
     """Settings of a preset with named overrides, e.g. ``{"matching.window": 8}``.
 
-    Values may be JSON values or text as on the command line. Raises `BadInput` that names the unknown
+    Values may be JSON values or text as on the command line. With `camera.params`, `mapper.refine_lens` is false
+    unless it is named. Raises `BadInput` that names the unknown
     option (with the nearest known one) or the value that does not fit.
     """
     chosen = dict(options or {})
@@ -133,6 +134,9 @@ def make_settings(preset: str = "default", options: Mapping[str, object] | None 
             hint = f"; did you mean '{near}'?" if near else "; `bladeatlas options` lists all"
             raise BadInput(f"unknown option '{name}'{hint}", where=name)
     values: dict[str, object] = {"preset": preset, "overrides": tuple(sorted(chosen))}
+    if chosen.get("camera.params") is not None:
+        # A lens that was measured is worth more than what one clip says of it.
+        chosen.setdefault("mapper.refine_lens", False)
     groups_of_values: dict[str, dict[str, object]] = {}
     for name, value in {**preset_values(preset), **chosen}.items():
         group, _, leaf = name.rpartition(".")
@@ -142,4 +146,6 @@ def make_settings(preset: str = "default", options: Mapping[str, object] | None 
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "value_error":  # of our own validators, whose sentences name the options
+            raise BadInput(str(first["ctx"]["error"]), where=where) from None
         raise BadInput(f"option '{where}': {first['msg']} (got {first['input']!r})", where=where) from None

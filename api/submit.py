@@ -28,6 +28,8 @@ from api.receiving import body_of, on_disk, while_there
 from api.schemas import EXAMPLE_ID, Parameters
 from api.services import Services
 from api.state import State
+from core.calibration.documents import MAX_BYTES
+from core.calibration.files import parse_calibration
 from core.errors import BadInput
 from core.fingerprint import digest_of, digest_of_file
 from core.settings import Settings, make_settings
@@ -55,6 +57,7 @@ CREATE_BODY: dict[str, Any] = {
                     "properties": {
                         "video": {**_BINARY, "description": "the video; its content decides, not its declared type"},
                         "annotations": {**_BINARY, "description": "any file of docs/annotations.md; told by content"},
+                        "calibration": {**_BINARY, "description": "the lens: a file of docs/calibration.md"},
                         "parameters": {"$ref": "#/components/schemas/Parameters"},
                     },
                 }
@@ -266,6 +269,7 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
     limits = {
         "video": settings.max_upload_bytes,
         "annotations": settings.max_annotations_bytes,
+        "calibration": MAX_BYTES,
         "parameters": MAX_PARAMETERS_BYTES,
     }
     # Refused before the body is read: a client that asked with `Expect: 100-continue` need not send it.
@@ -276,10 +280,21 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
         if "video" not in parts:
             raise invalid([FieldError(pointer="/video", detail="the part 'video' is missing")])
         parameters = parse_parameters(parts["parameters"].path.read_bytes()) if "parameters" in parts else Parameters()
+        if "calibration" in parts:
+            parameters = _calibrated(parameters, parts["calibration"].path)
         annotations = _file(parts["annotations"]) if "annotations" in parts else None
         yield Asked(owner, _file(parts["video"]), annotations, parameters, key)
     finally:
         form.discard()
+
+
+def _calibrated(parameters: Parameters, path: Path) -> Parameters:
+    """The parameters with the options that a calibration file stands for; options that are named count before them."""
+    try:
+        told = parse_calibration(path.read_bytes(), "calibration").options()
+    except BadInput as error:
+        raise invalid([FieldError(pointer="/calibration", detail=error.message)]) from None
+    return parameters.model_copy(update={"options": {**told, **parameters.options}})
 
 
 def _file(part: Part) -> LocalFile:

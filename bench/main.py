@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench import measurements
+from bench import boards, measurements
 from bench.mutate import command as mutate
 from bench.scenes import command as scenes
 from bench.soak import command as soak
@@ -46,6 +46,9 @@ def make_parser() -> argparse.ArgumentParser:
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)
+    boards_parser = commands.add_parser("boards", help="render calibration boards through known lenses and calibrate")
+    boards.add_arguments(boards_parser)
+    boards_parser.set_defaults(run=boards.command)
     mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
     mutate.add_arguments(mutate_parser)
     mutate_parser.set_defaults(run=mutate.command)

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from cli.annotation_file import annotation_file, with_format
+from cli.input_files import annotation_file, with_format
 from cli.parameters import parse_assignment
 from cli.progress import duration
 from cli.terminal import say, say_json

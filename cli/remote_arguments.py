@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from cli.annotation_file import add_format
+from cli.input_files import add_calibration, add_format
 from core.settings import PRESET_NAMES
 
 Commands = argparse._SubParsersAction  # argparse has no public name for it
@@ -37,6 +37,7 @@ def _submit(submit: argparse.ArgumentParser) -> None:
         "annotations", type=Path, nargs="?", metavar="ANNOTATIONS", help="file or folder; see docs/annotations.md"
     )
     add_format(submit)
+    add_calibration(submit)
     submit.add_argument("--preset", metavar="|".join(PRESET_NAMES), help="where the values start")
     submit.add_argument(
         "--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help="set one option"

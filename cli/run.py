@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cli import exits, parameters, progress, report
-from cli.annotation_file import optional_annotation_file
+from cli.input_files import optional_annotation_file
 from cli.terminal import say
 from core.errors import BadInput
 from core.graph import STAGES

@@ -56,12 +56,14 @@ def document_of(text: str, where: str) -> Document:
         elif first == "{":
             value = json.loads(text)
         else:
-            value = yaml.load(_NOT_YAML.sub("", text), Loader=yaml.BaseLoader)  # noqa: S506 (it makes texts only)
+            value = yaml.load(_NOT_YAML.sub("", text), Loader=yaml.BaseLoader)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         place = f" at line {mark.line + 1}, column {mark.column + 1}" if mark is not None else ""
         raise refused(f"the file is not valid YAML: {error.problem}{place}", where) from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    except RecursionError:
+        raise refused("the file is nested too deeply", where) from None
+    except (yaml.YAMLError, ValueError) as error:
         raise refused(f"the file cannot be read: {str(error).splitlines()[0]}", where) from None
     if not isinstance(value, dict):
         raise refused("the file holds no fields of a calibration", where)

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from core.annotations.foreign.archive import MAX_RATIO, packed_folder
-from core.xml_tree import MAX_DEPTH, parse_xml
 from core.annotations.load import annotations_from, load_annotations
 from core.errors import BadInput
 from core.intake import answer, check_input
 from core.scene.detection import DETECTION_COLUMNS
 from core.settings import make_settings
+from core.xml_tree import MAX_DEPTH, parse_xml
 from tests.core.making_annotations import zipped
 from tests.inputs import INPUTS
 

@@ -1,4 +1,4 @@
-"""Calibration files of OpenCV, Kalibr and COLMAP, told by what they hold.
+"""Calibration files: those of OpenCV, Kalibr and COLMAP are read, told by what they hold; ours are OpenCV's.
 
 OpenCV and Kalibr count pixel centres as whole numbers, COLMAP at halves: principal points are converted here.
 """
@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from core.calibration.documents import MAX_BYTES, Document, document_of, is_colmap, refused, text_of
-from core.calibration.model import Calibration, calibration_of, without_third_term
+from core.calibration.model import Calibration, calibration_of, refitted
+from core.errors import BadInput
 from core.geometry.lens import PARAMETERS, Lens, make_lens
-from core.names import unknown_name
 
 FISHEYE_NAMES = ("fisheye", "equidistant", "equi", "opencv_fisheye", "kannala_brandt4")
 PERSPECTIVE_NAMES = ("pinhole", "plumb_bob", "radtan", "opencv", "rational_polynomial")
@@ -71,7 +71,7 @@ def _of_colmap(text: str, where: str) -> Calibration:
     _, model, width, height, *params = lines[0]
     names = PARAMETERS.get(model)
     if names is None:
-        raise refused(unknown_name("model", model, PARAMETERS), where)
+        raise refused(f"the model '{model}' is not read; {', '.join(PARAMETERS)} are", where)
     if len(params) != len(names):
         raise refused(f"{model} has the {len(names)} parameters {', '.join(names)}; {len(params)} are given", where)
     lens = make_lens(model, [_number(value, name, where) for name, value in zip(names, params, strict=True)])
@@ -126,9 +126,7 @@ def _of_opencv(document: Document, where: str) -> Calibration:
     lens = replace(lens, radial=(k1, k2, 0.0, 0.0), tangential=(p1, p2))
     calibration = calibration_of(lens, (width, height), where)
     return (
-        calibration
-        if k3 == 0
-        else calibration_of(without_third_term(lens, k3, (width, height), where), (width, height), where)
+        calibration if k3 == 0 else calibration_of(refitted(lens, k3, (width, height), where), (width, height), where)
     )
 
 
@@ -192,3 +190,37 @@ def _whole(value: Any, name: str, where: str) -> int:
     if number != int(number) or number <= 0:
         raise refused(f"'{name}' is {value!r}; it needs to be a number of pixels", where)
     return int(number)
+
+
+def write_calibration(path: Path, calibration: Calibration, notes: Mapping[str, str | int | float]) -> None:
+    """Write a calibration of OpenCV's fisheye or perspective model as a YAML file of cv2.FileStorage.
+
+    Args:
+        path: of the file, replaced when there is one.
+        calibration: of OPENCV_FISHEYE, OPENCV or PINHOLE.
+        notes: further fields, numbers or plain texts, which readers pass over.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+    lens = calibration.lens
+    k1, k2, k3, k4 = lens.radial
+    terms = [k1, k2, k3, k4] if lens.fisheye else [k1, k2, *lens.tangential, 0.0]
+    matrix = [lens.fx, 0.0, lens.cx - _HALF, 0.0, lens.fy, lens.cy - _HALF, 0.0, 0.0, 1.0]
+    fields: dict[str, object] = {
+        "image_width": calibration.size_px[0],
+        "image_height": calibration.size_px[1],
+        "model": FISHEYE_NAMES[0] if lens.fisheye else PERSPECTIVE_NAMES[0],
+        **{name: f'"{value}"' if isinstance(value, str) else value for name, value in notes.items()},
+    }
+    lines = ["%YAML:1.0", "---", *(f"{name}: {value}" for name, value in fields.items())]
+    for name, rows, values in ((_MATRIX_FIELDS[0], 3, matrix), (_DISTORTION_FIELDS[0], len(terms), terms)):
+        data = ", ".join(repr(float(value)) for value in values)
+        lines += [f"{name}: !!opencv-matrix", f"   rows: {rows}", f"   cols: {len(values) // rows}", "   dt: d"]
+        lines.append(f"   data: [ {data} ]")
+    try:
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise BadInput(
+            f"'{path}' cannot be written: {error.strerror}", code="unwritable_file", where=str(path)
+        ) from None

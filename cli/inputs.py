@@ -19,7 +19,7 @@ from core.annotations.summary import AnnotationSummary, summarise
 from core.errors import BadInput
 from core.intake import in_what_order
 from core.settings import make_settings
-from core.settings.groups import InputSettings
+from core.settings.reading import InputSettings
 from core.video.probe import probe_video
 from core.video.table import RATE_FROM, FrameTable, VideoInfo, colon_text, listed
 

@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from core.errors import BadInput
 from core.names import nearest
-from core.settings import groups
+from core.settings import groups, reading
 from core.settings.base import Group, option
 
 PresetName = Literal["default", "thesis", "draft"]
@@ -23,7 +23,7 @@ class Settings(Group):
     version: int = option(1, "version of the meaning of these options", source="this project", ge=1, le=1)
     preset: PresetName = option("default", "preset the values started from", source="this project")
     seed: int = option(0, "seed of every random choice", source="this project", ge=0, lt=2**31)
-    input: groups.InputSettings = groups.InputSettings()
+    input: reading.InputSettings = reading.InputSettings()
     frames: groups.FrameSettings = groups.FrameSettings()
     roi: groups.RoiSettings = groups.RoiSettings()
     camera: groups.CameraSettings = groups.CameraSettings()

@@ -15,7 +15,7 @@ from core.annotations.foreign.sheet import Sheet, counted, number_in_name
 from core.annotations.load import load_annotations
 from core.annotations.placed import place
 from core.errors import BadInput
-from core.settings.groups import InputSettings
+from core.settings.reading import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameTable
 from tests.core.making_annotations import FRAME, read, zipped

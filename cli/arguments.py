@@ -111,8 +111,8 @@ def _calibrate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--board",
         required=True,
         metavar="BOARD",
-        help="chessboard:9x6:10 (inner corners, side of a square) or charuco:11x8:15:11:DICT_5X5_100 (squares, side of a "
-        "square and of a marker, OpenCV's dictionary)",
+        help="chessboard:9x6:10 (inner corners, side of a square) or charuco:11x8:15:11:DICT_5X5_100 (squares, side of "
+        "a square and of a marker, OpenCV's dictionary)",
     )
     calibrate.add_argument("--out", type=Path, required=True, metavar="FILE", help="YAML to write")
     calibrate.add_argument("--model", choices=["fisheye", "pinhole"], default="fisheye", help="kind of lens (fisheye)")

@@ -1,4 +1,4 @@
-"""The annotations and the calibration that a command names; annotations are a file, or a folder as many tools write it."""
+"""The files beside the video that a command names: annotations, also as a folder of files, and a calibration."""
 
 from __future__ import annotations
 

@@ -26,9 +26,7 @@ DICTIONARIES = tuple(
     if re.fullmatch(r"DICT_(\dX\d_\d+|APRILTAG_\w+h\d+|ARUCO_ORIGINAL|ARUCO_MIP_36h12)", name)
 )
 """OpenCV's, by name."""
-LARGEST_DICTIONARIES = tuple(
-    name for name in DICTIONARIES if name.endswith(("_1000", "ORIGINAL")) or "APRILTAG" in name
-)
+LARGEST_DICTIONARIES = tuple(name for name in DICTIONARIES if re.search(r"_1000$|ORIGINAL$|APRILTAG", name))
 """Those whose first markers the smaller dictionaries of the same size hold."""
 _FORMS = "chessboard:COLUMNSxROWS:SQUARE (inner corners) or charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares)"
 _PLACE = "--board"

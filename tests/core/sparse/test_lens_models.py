@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.geometry.lens import LensModel, lens_of
+from core.geometry.lens import LensModel, lens_of, make_lens
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust
 from core.sparse.cases import Case
@@ -58,10 +58,8 @@ def test_a_held_lens_stays_as_it_was_told_and_the_cameras_follow(model: str, tmp
 @pytest.mark.parametrize("model", [LensModel.OPENCV, LensModel.PINHOLE, LensModel.SIMPLE_RADIAL])
 def test_a_perspective_lens_is_found_from_a_wrong_start(model: LensModel, tmp_path: Path) -> None:
     scene = make_scene(FRAMES, lens=fields(model, TRUE[model]))
-    off = [
-        1.06 * value if at < (1 if model == LensModel.SIMPLE_RADIAL else 2) else value
-        for at, value in enumerate(TRUE[model])
-    ]
+    lens = make_lens(model, TRUE[model])
+    off = replace(lens, fx=1.06 * lens.fx, fy=1.06 * lens.fy).params(model)
     scene = replace(scene, lens=fields(model, off))
     graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
     settings = MapperSettings()

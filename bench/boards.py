@@ -21,6 +21,7 @@ from core.calibration.board import Board, BoardKind, CornerFinder, parse_board
 from core.calibration.model import Calibration
 from core.calibration.video import calibrate_video
 from core.geometry.lens import LensModel
+from core.geometry.pose import transform
 
 F64 = NDArray[np.float64]
 U8 = NDArray[np.uint8]
@@ -85,7 +86,7 @@ def picture(board: Board, camera: pycolmap.Camera, rays: F64, pose: tuple[F64, F
         depth = (R[:, 2] @ t) / (rays @ R[:, 2])
         on_board = (depth[:, None] * rays - t) @ R
     on_board[~(depth > 0)] = -1e6
-    places = np.nan_to_num(on_board[:, :2] @ index[:, :2].T + index[:, 2], nan=-1e6).astype(np.float32)
+    places = np.nan_to_num(transform(on_board[:, :2], index[:, :2], index[:, 2]), nan=-1e6).astype(np.float32)
     shape = (_FINER * camera.height, _FINER * camera.width)
     fine = cv2.remap(
         texture,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 from xml.etree.ElementTree import Element
 
 import yaml
@@ -21,7 +21,7 @@ from core.xml_tree import parse_xml
 MAX_BYTES = 1 << 20
 """Largest file; one of a camera has some hundred bytes."""
 
-Document: TypeAlias = Mapping[str, Any]
+Document: TypeAlias = Mapping[str, object]
 
 _NOT_YAML = re.compile(r"\A\s*%YAML[: ]1\.\d[^\n]*\n")
 """OpenCV's first line, `%YAML:1.0`, which is not YAML."""
@@ -50,6 +50,7 @@ def is_colmap(text: str) -> bool:
 def document_of(text: str, where: str) -> Document:
     """The object that a text holds; `BadInput` when it is malformed or no object."""
     first = text.lstrip()[:1]
+    value: object
     try:
         if first == "<":
             value = _of_xml(parse_xml(text.encode(), "calibration"))
@@ -75,7 +76,7 @@ def refused(message: str, where: str) -> BadInput:
     return BadInput(message, code=CODE, where=where)
 
 
-def _of_xml(element: Element) -> Any:
+def _of_xml(element: Element) -> object:
     """An element of OpenCV's XML: its text, or its children by name."""
     if not len(element):
         return (element.text or "").strip().strip('"')

@@ -9,7 +9,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from core.calibration.documents import MAX_BYTES, Document, document_of, is_colmap, refused, text_of
 from core.calibration.model import Calibration, calibration_of, refitted
@@ -78,7 +77,7 @@ def _of_colmap(text: str, where: str) -> Calibration:
     return calibration_of(lens, (_whole(width, "WIDTH", where), _whole(height, "HEIGHT", where)), where)
 
 
-def _of_kalibr(camera: Any, where: str) -> Calibration:
+def _of_kalibr(camera: object, where: str) -> Calibration:
     """One camera of a camchain: pinhole projection with equidistant, radtan or no distortion."""
     if not isinstance(camera, Mapping):
         raise refused("the camera has no fields", where)
@@ -130,7 +129,7 @@ def _of_opencv(document: Document, where: str) -> Calibration:
     )
 
 
-def _is_fisheye(root: Mapping[str, Any], n_terms: int, where: str) -> bool:
+def _is_fisheye(root: Mapping[str, object], n_terms: int, where: str) -> bool:
     """By the field of the model; without one by the number of coefficients, of which only a fisheye has four.
 
     OpenCV's perspective calibration writes five or more unless it is told otherwise.
@@ -148,14 +147,14 @@ def _is_fisheye(root: Mapping[str, Any], n_terms: int, where: str) -> bool:
     return n_terms == _FISHEYE_TERMS
 
 
-def _field(fields: Mapping[str, Any], names: Sequence[str], where: str) -> Any:
+def _field(fields: Mapping[str, object], names: Sequence[str], where: str) -> object:
     found = next((fields[name] for name in names if name in fields), None)
     if found is None:
         raise refused(f"the field '{names[0]}' is missing", where)
     return found
 
 
-def _list(fields: Mapping[str, Any], names: Sequence[str], where: str, count: int | None = None) -> list[Any]:
+def _list(fields: Mapping[str, object], names: Sequence[str], where: str, count: int | None = None) -> list[object]:
     """The values of a list or of an OpenCV matrix, row by row."""
     value = _field(fields, names, where)
     if isinstance(value, Mapping):
@@ -171,21 +170,21 @@ def _list(fields: Mapping[str, Any], names: Sequence[str], where: str, count: in
     return value
 
 
-def _numbers(fields: Mapping[str, Any], names: Sequence[str], where: str, count: int | None = None) -> list[float]:
+def _numbers(fields: Mapping[str, object], names: Sequence[str], where: str, count: int | None = None) -> list[float]:
     return [_number(value, names[0], where) for value in _list(fields, names, where, count)]
 
 
-def _number(value: Any, name: str, where: str) -> float:
+def _number(value: object, name: str, where: str) -> float:
     try:
-        number = math.nan if isinstance(value, bool) else float(value)
-    except (TypeError, ValueError, OverflowError):
+        number = float(str(value))
+    except ValueError:
         number = math.nan
     if not math.isfinite(number):
         raise refused(f"'{name}' holds {value!r}, which is no finite number", where)
     return number
 
 
-def _whole(value: Any, name: str, where: str) -> int:
+def _whole(value: object, name: str, where: str) -> int:
     number = _number(value, name, where)
     if number != int(number) or number <= 0:
         raise refused(f"'{name}' is {value!r}; it needs to be a number of pixels", where)

@@ -67,7 +67,7 @@ def test_a_perspective_lens_is_found_again_from_a_chessboard(tmp_path: Path) -> 
     ("board", "words"),
     [
         ("charuco:7x5:10:7:DICT_6X6_50", "markers of DICT_4X4_... are seen"),
-        ("chessboard:5x4:10", "none of 12 frames"),
+        ("chessboard:9x6:10", "none of 12 frames"),
     ],
 )
 def test_another_board_than_the_one_named_is_said(pictures: Path, board: str, words: str) -> None:

@@ -56,6 +56,7 @@ class Prober:
             "annotation_format": settings.input.annotation_format,
             "video_stream": settings.input.video_stream,
             "fps": settings.input.fps,
+            "calibration_size": settings.camera.size_px,
             "roi": settings.roi.model_dump(mode="json"),
             "limits": asdict(self._limits),
             "parent": os.getpid(),

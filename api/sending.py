@@ -21,6 +21,9 @@ from api.receiving import body_of, on_disk
 from api.schemas import EXAMPLE_ID, PARAMETERS_EXAMPLE, Parameters
 from api.services import Services
 from api.submit import Asked, LocalFile, Sent, invalid, parse_json, parse_parameters
+from core.calibration.documents import MAX_BYTES
+from core.calibration.files import parse_calibration
+from core.errors import BadInput
 from core.fingerprint import digest_of_file
 from core.videos import MAX_VIDEOS
 
@@ -53,6 +56,7 @@ CREATE_BODY: dict[str, Any] = {
                             "description": "any file of docs/annotations.md; told by content. Of several videos one "
                             "each, in the same order; an empty part for a video without",
                         },
+                        "calibration": {**_BINARY, "description": "the lens: a file of docs/calibration.md"},
                         "parameters": {"$ref": "#/components/schemas/Parameters"},
                     },
                 }
@@ -129,6 +133,7 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
     limits = {
         "video": settings.max_upload_bytes,
         "annotations": settings.max_annotations_bytes,
+        "calibration": MAX_BYTES,
         "parameters": MAX_PARAMETERS_BYTES,
     }
     # Refused before the body is read: a client that asked with `Expect: 100-continue` need not send it.
@@ -138,9 +143,21 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
         await form.read(request.headers, owner, body_of(request))
         given = form.named("parameters")
         parameters = parse_parameters(given[0].path.read_bytes()) if given else Parameters()
+        calibration = form.named("calibration")
+        if calibration:
+            parameters = _calibrated(parameters, calibration[0].path)
         yield Asked(owner, _sent(form.named("video"), form.named("annotations")), parameters, key)
     finally:
         form.discard()
+
+
+def _calibrated(parameters: Parameters, path: Path) -> Parameters:
+    """The parameters with the options that a calibration file stands for; options that are named count before them."""
+    try:
+        told = parse_calibration(path.read_bytes(), "calibration").options()
+    except BadInput as error:
+        raise invalid([FieldError(pointer="/calibration", detail=error.message)]) from None
+    return parameters.model_copy(update={"options": {**told, **parameters.options}})
 
 
 def _sent(videos: list[Part], annotations: list[Part]) -> tuple[Sent, ...]:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench import measurements, verdicts
+from bench import boards, measurements, verdicts
 from bench.mutate import command as mutate
 from bench.real import command as real
 from bench.scenes import command as scenes
@@ -57,6 +57,9 @@ def make_parser() -> argparse.ArgumentParser:
     real_parser = commands.add_parser("real", help="run real clips with known cameras beside COLMAP")
     real.add_arguments(real_parser)
     real_parser.set_defaults(run=real.command)
+    boards_parser = commands.add_parser("boards", help="render calibration boards through known lenses and calibrate")
+    boards.add_arguments(boards_parser)
+    boards_parser.set_defaults(run=boards.command)
     mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
     mutate.add_arguments(mutate_parser)
     mutate_parser.set_defaults(run=mutate.command)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from cli.account_arguments import add_account_commands
-from cli.annotation_file import add_format
+from cli.input_files import add_calibration, add_format
 from cli.recordings import add_recordings
 from cli.remote_arguments import add_remote_commands
 from cli.terminal import say
@@ -83,6 +83,7 @@ def parser() -> argparse.ArgumentParser:
     _set(check, "set one option of the input (repeatable), e.g. input.time_convention=index to try a reading")
     _json(check)
     _convert(commands)
+    _calibrate(commands)
     _questions(commands)
     options = _add(commands, "options", "list every option: meaning, unit, default, range, source")
     _preset(options)
@@ -111,6 +112,22 @@ def _convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     _json(convert)
 
 
+def _calibrate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    calibrate = _add(commands, "calibrate", "find the lens from a video of a calibration board, for --calibration")
+    calibrate.add_argument("video", type=Path, metavar="VIDEO", help="file, or folder or zip of pictures")
+    calibrate.add_argument(
+        "--board",
+        required=True,
+        metavar="BOARD",
+        help="chessboard:9x6:10 (inner corners, side of a square) or charuco:11x8:15:11:DICT_5X5_100 (squares, side of "
+        "a square and of a marker, OpenCV's dictionary)",
+    )
+    calibrate.add_argument("--out", type=Path, required=True, metavar="FILE", help="YAML to write")
+    calibrate.add_argument("--model", choices=["fisheye", "pinhole"], default="fisheye", help="kind of lens (fisheye)")
+    calibrate.add_argument("--views", type=int, default=40, metavar="N", help="views used, at most (40)")
+    _json(calibrate)
+
+
 def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """What can be asked of a finished result."""
     point = _add(commands, "point", "say which point of the surface a pixel of a frame shows")
@@ -135,6 +152,7 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run = _add(commands, "run", "inspect: videos and their annotations in, result folder out", epilog=_EXIT_CODES)
     add_recordings(run)
     add_format(run)
+    add_calibration(run)
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)
     _set(run, "set one option (repeatable); `bladeatlas options` lists them")

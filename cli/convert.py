@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from cli.annotation_file import with_format
+from cli.input_files import with_format
 from cli.inputs import input_options, read_with_video
 from cli.terminal import say, say_json
 from core.annotations.placed import place

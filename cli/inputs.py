@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from cli.annotation_file import annotation_file, with_format
+from cli.input_files import annotation_file, with_format
 from cli.parameters import parse_assignment
 from cli.progress import duration
 from cli.terminal import say, say_json
@@ -20,7 +20,7 @@ from core.annotations.summary import AnnotationSummary, summarise
 from core.errors import BadInput
 from core.intake import in_what_order
 from core.settings import make_settings
-from core.settings.groups import InputSettings
+from core.settings.reading import InputSettings
 from core.video.probe import probe_video
 from core.video.table import RATE_FROM, FrameTable, VideoInfo, colon_text, listed
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from cli.annotation_file import annotation_file
+from cli.input_files import annotation_file
 from core.annotations.foreign.unreadable import is_video_file
 from core.errors import BadInput
 from core.videos import Recording, require_count

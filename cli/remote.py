@@ -14,10 +14,10 @@ from rich.markup import escape
 from rich.progress import BarColumn, DownloadColumn, Progress, TaskID, TextColumn, TransferSpeedColumn
 
 from cli import exits
-from cli.annotation_file import with_format
 from cli.client import Client, InspectionInfo
 from cli.client.client import chosen
 from cli.client.transfers import no_progress
+from cli.input_files import calibration_options, with_format
 from cli.parameters import Parameters, parse_assignment, parse_priority, read_parameters
 from cli.progress import duration
 from cli.recordings import recordings_of
@@ -56,7 +56,8 @@ def submit(parsed: argparse.Namespace) -> int:
 def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
     """Parameter file first, then what the command line says over it; checked here before anything is sent."""
     base = read_parameters(parsed.parameters) if parsed.parameters else Parameters()
-    options = {**base.options, **dict(parse_assignment(text) for text in with_format(parsed))}
+    options = {**base.options, **calibration_options(parsed.calibration)}
+    options.update(parse_assignment(text) for text in with_format(parsed))
     priority = base.priority if parsed.priority is None else parse_priority(parsed.priority, "--priority")
     wanted = Parameters(
         parsed.preset or base.preset,

@@ -78,7 +78,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("motion", weight=0.4),
         _spec(
             "focal",
-            *_options("camera", "principal_point", "focal_span", "focal_spans"),
+            *_options("camera", "model", "principal_point", "focal_span", "focal_spans"),
             *_options("mapper", "min_model_size", "init_min_num_inliers"),
             *_options("mapper", "abs_pose_min_num_inliers", "abs_pose_min_inlier_ratio"),
             "matching.ratio",
@@ -88,7 +88,12 @@ STAGES: dict[str, StageSpec] = {
             fan_out=True,
             weight=7,
         ),
-        _spec("camera", *_options("camera", "fov_deg", "focal", "principal_point"), version=2, weight=0.1),
+        _spec(
+            "camera",
+            *_options("camera", "model", "params", "size_px", "fov_deg", "focal", "principal_point"),
+            version=2,
+            weight=0.1,
+        ),
         _spec(
             "matches", *_MATCHER, "matching.window", version=3, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
@@ -213,7 +218,8 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
         tasks.append(TaskSpec("motion", ("frames", *feature_keys)))
         motion_keys = ("motion",)
     focal_keys: tuple[str, ...] = ()
-    if settings.camera.fov_deg is None and settings.camera.focal == "estimate":
+    told = settings.camera.fov_deg is not None or settings.camera.params is not None
+    if not told and settings.camera.focal == "estimate":
         focal = [
             TaskSpec(
                 key_of("focal", part=f"{fov:05.1f}"),

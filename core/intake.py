@@ -22,6 +22,7 @@ from typing import NotRequired, TypedDict
 from core.annotations.foreign.unreadable import is_video_file
 from core.annotations.load import load_annotations
 from core.errors import BadInput, BladeAtlasError
+from core.geometry.lens import scale_to
 from core.roi import crop_of
 from core.settings import Settings
 from core.settings.groups import RoiSettings
@@ -52,6 +53,8 @@ class Question(TypedDict):
     annotation_format: NotRequired[str]
     roi: dict[str, float]
     """Shares of the frame: x0, y0, x1, y1."""
+    calibration_size: NotRequired[tuple[int, int] | None]
+    """Width and height of the picture that a calibration is of, px."""
     limits: NotRequired[LimitFields]
 
 
@@ -84,6 +87,8 @@ def check_input(recordings: Sequence[Recording], settings: Settings) -> None:
     options = settings.input
     videos = _checked(recordings, options.video_stream, PIXELS_ONLY, options.fps)
     _read_annotations(recordings, videos, options.annotation_format)
+    if settings.camera.size_px is not None:
+        scale_to(settings.camera.size_px, videos[0]["width"], videos[0]["height"])
     check_roi(settings)
 
 
@@ -191,7 +196,7 @@ def answer(question: Question) -> Answer:
 
     Args:
         question: ``recordings`` (paths) and ``roi`` (shares), optionally ``annotation_format``, ``video_stream``,
-            ``fps``, ``limits`` (`VideoLimits`).
+            ``fps``, ``calibration_size``, ``limits`` (`VideoLimits`).
 
     Returns:
         ``{"videos": [{...}], "n_detections": n}``, or ``{"error": BladeAtlasError.to_dict()}``.
@@ -200,6 +205,9 @@ def answer(question: Question) -> Answer:
         recordings = [Recording.from_dict(one) for one in question["recordings"]]
         limits = VideoLimits(**question.get("limits", {}))
         videos = _checked(recordings, question.get("video_stream"), limits, question.get("fps"))
+        size = question.get("calibration_size")
+        if size is not None:
+            scale_to(size, videos[0]["width"], videos[0]["height"])
         crop_of(RoiSettings(**question["roi"]), videos[0]["width"], videos[0]["height"])
         n_detections = _read_annotations(recordings, videos, question.get("annotation_format", "auto"))
     except BladeAtlasError as error:

@@ -13,6 +13,7 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
+from core.geometry.lens import lens_of
 from core.settings.groups import VerificationSettings
 
 UNDEFINED, DEGENERATE, CALIBRATED, UNCALIBRATED, PLANAR = 0, 1, 2, 3, 4
@@ -89,6 +90,10 @@ class Verifier:
         options.ransac.random_seed = seed
         options.ransac.num_threads = 1
         options.ransac.min_num_trials = _MIN_TRIALS
+        if not lens_of(camera).fisheye:
+            # Pairs of a fisheye are judged by the essential matrix of their rays alone, and so are those of any lens:
+            # with a fundamental matrix beside it a pair counts as uncalibrated, and gives no initial pair.
+            options.min_E_F_inlier_ratio = 0.0
         self._options = options
         self._settings = settings
 

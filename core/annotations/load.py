@@ -15,12 +15,12 @@ from core.annotations.foreign.conversion import annotations_of
 from core.annotations.foreign.formats import AUTO, FORMAT_NAMES, FORMATS, OWN, Format
 from core.annotations.foreign.sheet import Sheet, Size
 from core.annotations.foreign.unreadable import binary_kind, is_own, json_kind, text_kind, unreadable, xml_kind
-from core.annotations.foreign.xml_tree import parse_xml
 from core.annotations.model import Annotations
 from core.annotations.parse import parse_annotations
 from core.annotations.read import parse_json, read_bytes
 from core.errors import BadInput
 from core.names import unknown_name
+from core.xml_tree import parse_xml
 
 _ZIP = b"PK"
 

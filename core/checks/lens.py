@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.flags import Flag, Severity
-from core.geometry.fisheye import viewing_angle
+from core.geometry.lens import Lens
 
 MIN_FOV_DEG = 15.0
 MAX_FOV_DEG = 200.0
@@ -44,26 +43,25 @@ def check_left(focal_px: float, said_px: Sequence[float]) -> Flag | None:
     return Flag("lens_unsettled", Severity.WARNING, left, MAX_LEFT, "focal length against what spans of the clip said")
 
 
-def check_lens(width: int, height: int, params: NDArray[np.float64]) -> list[Flag]:
-    """Flags of an OPENCV_FISHEYE camera.
+def check_lens(width: int, height: int, lens: Lens) -> list[Flag]:
+    """Flags of a lens.
 
     Args:
         width: of the image, px.
         height: of the image, px.
-        params: (8,) fx, fy, cx, cy, k1..k4.
+        lens: of that image.
 
     Returns:
         `distortion_implausible` when the image's farthest corner lies beyond the fold;
         `focal_implausible` when the field of view across the width is outside 15-200 degrees;
         `focal_lengths_differ` when fx / fy is outside 0.97-1.03.
     """
-    fx, fy, cx, cy = params[:4]
-    distortion = params[4:]
+    fx, fy, cx, cy = lens.fx, lens.fy, lens.cx, lens.cy
     flags = []
     corner = np.hypot(max(cx, width - cx) / fx, max(cy, height - cy) / fy)
-    if viewing_angle(float(corner), distortion) is None:
-        flags.append(Flag("distortion_implausible", Severity.WARNING, float(np.abs(distortion).max()), None, "camera"))
-    sides = [viewing_angle(float(side / fx), distortion) for side in (cx, width - cx)]
+    if lens.angle_at(float(corner)) is None:
+        flags.append(Flag("distortion_implausible", Severity.WARNING, float(np.abs(lens.radial).max()), None, "camera"))
+    sides = [lens.angle_at(float(side / fx)) for side in (cx, width - cx)]
     # Where the polynomial folds, its linear part still tells the field of view.
     found = [side / fx if angle is None else angle for side, angle in zip((cx, width - cx), sides, strict=True)]
     fov = float(np.degrees(sum(found)))

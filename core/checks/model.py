@@ -14,6 +14,7 @@ from core.checks.parallax import check_planar, largest_angle_deg, model_parallax
 from core.checks.rotations import check_rotations, disagreement, measured_rotations, model_rotations
 from core.checks.stats import ModelStats, model_stats
 from core.flags import Flag, Severity, worst
+from core.geometry.lens import lens_of
 from core.viewgraph import PairTable
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def check_model(
         check_points(stats.points3D, stats.registered_images),
         check_coverage(stats.registered_images, n_frames),
         check_reprojection(stats.mean_reprojection_error_px),
-        *check_lens(int(camera.width), int(camera.height), np.array(camera.params)),
+        *check_lens(int(camera.width), int(camera.height), lens_of(camera)),
     ]
     return [flag for flag in flags if flag is not None]
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.dense.cameras import Pinhole
 from core.geometry.boxes import in_box
+from core.geometry.lens import lens_of
 
 F32 = NDArray[np.float32]
 U8 = NDArray[np.uint8]
@@ -40,7 +41,7 @@ def undistort_map(camera: pycolmap.Camera, pinhole: Pinhole) -> UndistortMap:
     rays[:, 1] = (v.ravel() + 0.5 - pinhole.cy) / pinhole.focal_px
     rays[:, 2] = 1.0
     pixels = np.asarray(camera.img_from_cam(rays), dtype=np.float64)
-    inside = np.isfinite(pixels).all(axis=1)
+    inside = np.isfinite(pixels).all(axis=1) & lens_of(camera).before_fold(rays)
     pixels[~inside] = -1.0
     inside &= in_box(pixels, (0.5, 0.5, camera.width - 0.5, camera.height - 0.5))
     shape = (pinhole.height, pinhole.width)

@@ -63,9 +63,14 @@ def _settings_flags(record: RunRecord) -> list[Flag]:
     flags = []
     if record.settings.mapping.box_frame == "crop":
         flags.append(Flag("boxes_in_crop_frame", Severity.WARNING, where="mapping.box_frame"))
-    if record.settings.camera.principal_point == "crop":
+    if _point_at_crop_centre(record):
         flags.append(Flag("principal_point_at_crop_centre", Severity.WARNING, where="camera.principal_point"))
     return flags
+
+
+def _point_at_crop_centre(record: RunRecord) -> bool:
+    """Whether the principal point started at the centre of the crop; that of a calibration does not."""
+    return record.settings.camera.principal_point == "crop" and record.settings.camera.params is None
 
 
 def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
@@ -99,6 +104,7 @@ def build_quality(
         "support": support,
         "time_convention": record.facts("annotations").get("time_convention"),
         **_of_several_videos(record),
+        "lens": _lens(record),
         "registration": _registration(record),
         "models": _models(record),
         "reprojection_error": _reprojection(record),
@@ -131,11 +137,14 @@ def _notes(record: RunRecord) -> list[str]:
             "Boxes are normalised on the source frame but were scaled to the cropped image, as the thesis appears to "
             "do; most places are wrong by it. The default preset transforms them exactly."
         )
-    if record.settings.camera.principal_point == "crop":
+    if _point_at_crop_centre(record):
         notes.append(
             "The principal point started at the centre of the off-centre crop, as the thesis appears to do. The "
             "default preset starts from the source frame's centre minus the crop offset."
         )
+    if record.settings.camera.params is not None:
+        held = "the lens was held" if not record.settings.mapper.refine_lens else "the lens was refined from there"
+        notes.append(f"The lens is that of a calibration ({record.settings.camera.model}); {held}.")
     if record.settings.overrides:
         notes.append(f"Preset {record.settings.preset} with overrides: {', '.join(record.settings.overrides)}.")
     return notes
@@ -170,6 +179,17 @@ def _registration(record: RunRecord) -> dict[str, object]:
         "annotated_frames": len(annotated),
         "annotated_registered": len(annotated & seen),
         "share_of_annotated": _share(len(annotated & seen), len(annotated)),
+    }
+
+
+def _lens(record: RunRecord) -> dict[str, object]:
+    """The lens of model 0, on the crop, where it started, and whether it was held there."""
+    start, final = record.facts("camera"), record.facts("extend")
+    return {
+        "model": final.get("lens_model", start.get("model")),
+        "params": final.get("lens_params"),
+        "from": start.get("focal_from"),
+        "held": not record.settings.mapper.refine_lens,
     }
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.boxes import in_box
+from core.geometry.lens import lens_of
 from core.geometry.pose import camera_centers
 
 if TYPE_CHECKING:  # whoever loads it for real has to load OpenCV first
@@ -66,6 +67,7 @@ class Views:
         in_cam = np.einsum("fij,nj->nfi", self.R, points) + self.t
         flat = in_cam.reshape(-1, 3)
         before = flat[:, 2] > 1e-9 * np.abs(flat).max(initial=1e-300)
+        before &= lens_of(self.camera).before_fold(flat)
         xy = np.full((len(flat), 2), np.nan)
         if before.any():
             xy[before] = np.asarray(self.camera.img_from_cam(np.ascontiguousarray(flat[before])))

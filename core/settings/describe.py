@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
@@ -80,6 +80,7 @@ def _range(info: FieldInfo) -> str:
             for attribute, sign in _LIMITS
             if getattr(item, attribute, None) is not None
         ]
-        base = "list of numbers" if kinds[-1] is Ellipsis else {int: "integer", float: "number"}.get(kinds[0], "text")
+        is_list = kinds[-1] is Ellipsis or get_origin(kinds[0]) is tuple
+        base = "list of numbers" if is_list else {int: "integer", float: "number"}.get(kinds[0], "text")
         text = " ".join([base, *limits])
     return f"{text} or null" if optional else text

@@ -1,58 +1,19 @@
-"""All algorithm options, grouped by what they govern. Defaults here are the preset `default`."""
+"""The algorithm options, grouped by what they govern; those of the input are in `core.settings.reading`.
+
+Defaults here are the preset `default`.
+"""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, Self
 
+from pydantic import model_validator
+
+from core.geometry.lens import LensModel, check_told
 from core.settings.base import Group, option
 
-
-class InputSettings(Group):
-    """What is accepted as input."""
-
-    allow_truncated: bool = option(False, "use the decodable part of a damaged video", source="refused by default")
-    video_stream: int | None = option(
-        None,
-        "number of the video stream to read, among all streams of the file; none = the film, never a cover or preview",
-        source="method",
-        ge=0,
-    )
-    fps: float | None = option(
-        None,
-        "frames per second of a video without times: pictures, a raw stream; none = what a raw stream's header states",
-        unit="1/s",
-        source="user",
-        ge=0.01,
-        le=1000,
-    )
-    time_convention: Literal[
-        "auto",
-        "pts",
-        "declared_rate",
-        "average_rate",
-        "index",
-        "milliseconds",
-        "container",
-        "declared_rate+1",
-        "average_rate+1",
-        "index+1",
-        "displayed",
-    ] = option("auto", "what the time keys of the annotations mean; auto = fitted over all of them", source="method")
-    annotation_format: Literal[
-        "auto",
-        "bladeatlas",
-        "coco",
-        "cvat",
-        "label-studio",
-        "yolo",
-        "ultralytics",
-        "supervisely",
-        "labelme",
-        "voc",
-        "via",
-        "roboflow",
-        "datumaro",
-    ] = option("auto", "the format that the annotations are of; auto = told by their content", source="method")
+MAX_PERSPECTIVE_FOV_DEG = 170.0
+"""A perspective lens maps 180 degrees to infinity."""
 
 
 class FrameSettings(Group):
@@ -95,8 +56,24 @@ class RoiSettings(Group):
 
 
 class CameraSettings(Group):
-    """Where the lens model starts. The model is one shared OPENCV_FISHEYE camera."""
+    """The lens: its model, and where it starts or what it is. All frames share one camera."""
 
+    model: Literal["OPENCV_FISHEYE", "OPENCV", "PINHOLE", "SIMPLE_RADIAL"] = option(
+        "OPENCV_FISHEYE", "COLMAP's model of the lens", source="thesis"
+    )
+    params: tuple[float, ...] | None = option(
+        None,
+        "what a calibration says of the lens: parameters of camera.model in COLMAP's order for the whole source frame, "
+        "pixel centres at 0.5; the lens is then held (`--calibration FILE` sets it)",
+        unit="px, rest without unit",
+        source="user",
+    )
+    size_px: tuple[int, int] | None = option(
+        None,
+        "width and height of the picture that camera.params belong to; those of the video may differ by one factor",
+        unit="px",
+        source="user",
+    )
     fov_deg: float | None = option(
         None, "horizontal field of view of the source frame, when known", unit="deg", source="user", gt=5, lt=220
     )
@@ -118,6 +95,21 @@ class CameraSettings(Group):
         "principal point: source frame's centre minus crop offset, or the crop's centre",
         source="method",
     )
+
+    @model_validator(mode="after")
+    def _agrees(self) -> Self:
+        """What is said of the lens says one thing, and a lens that can be."""
+        if (self.params is None) != (self.size_px is None):
+            raise ValueError("camera.params and camera.size_px are given together or not at all")
+        if self.fov_deg is not None and self.params is not None:
+            raise ValueError("camera.fov_deg and camera.params both say what the lens is; give one of them")
+        fisheye = self.model == LensModel.OPENCV_FISHEYE
+        if self.fov_deg is not None and self.fov_deg >= MAX_PERSPECTIVE_FOV_DEG and not fisheye:
+            reach = f"{MAX_PERSPECTIVE_FOV_DEG:g} degrees"
+            raise ValueError(f"camera.fov_deg is {self.fov_deg:g}; a {self.model} lens sees less than {reach}")
+        if self.params is not None and self.size_px is not None:
+            check_told(self.model, self.params, self.size_px)
+        return self
 
 
 class FeatureSettings(Group):
@@ -220,6 +212,12 @@ class MapperSettings(Group):
     )
     refine_distortion: bool = option(
         False, "free the distortion while a model grows; the last adjustment frees it in any case", source="measured"
+    )
+    refine_lens: bool = option(
+        True,
+        "free the lens while a model grows and at the end; false holds it as it was told, and is the default with "
+        "camera.params",
+        source="method",
     )
     search_tracks: int = option(
         400, "keypoints per image that take part in the search, longest tracks first; 0 = all", source="measured", ge=0

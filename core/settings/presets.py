@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from core.errors import BadInput
 from core.names import nearest
-from core.settings import groups
+from core.settings import groups, reading
 from core.settings.base import Group, option
 
 PresetName = Literal["default", "thesis", "draft"]
@@ -23,7 +23,7 @@ class Settings(Group):
     version: int = option(1, "version of the meaning of these options", source="this project", ge=1, le=1)
     preset: PresetName = option("default", "preset the values started from", source="this project")
     seed: int = option(0, "seed of every random choice", source="this project", ge=0, lt=2**31)
-    input: groups.InputSettings = groups.InputSettings()
+    input: reading.InputSettings = reading.InputSettings()
     frames: groups.FrameSettings = groups.FrameSettings()
     roi: groups.RoiSettings = groups.RoiSettings()
     camera: groups.CameraSettings = groups.CameraSettings()
@@ -123,7 +123,8 @@ def preset_values(preset: str) -> dict[str, object]:
 def make_settings(preset: str = "default", options: Mapping[str, object] | None = None) -> Settings:
     """Settings of a preset with named overrides, e.g. ``{"matching.window": 8}``.
 
-    Values may be JSON values or text as on the command line. Raises `BadInput` that names the unknown
+    Values may be JSON values or text as on the command line. With `camera.params`, `mapper.refine_lens` is false
+    unless it is named. Raises `BadInput` that names the unknown
     option (with the nearest known one) or the value that does not fit.
     """
     chosen = dict(options or {})
@@ -134,6 +135,9 @@ def make_settings(preset: str = "default", options: Mapping[str, object] | None 
             hint = f"; did you mean '{near}'?" if near else "; `bladeatlas options` lists all"
             raise BadInput(f"unknown option '{name}'{hint}", where=name)
     values: dict[str, object] = {"preset": preset, "overrides": tuple(sorted(chosen))}
+    if chosen.get("camera.params") is not None:
+        # A lens that was measured is worth more than what one clip says of it.
+        chosen.setdefault("mapper.refine_lens", False)
     groups_of_values: dict[str, dict[str, object]] = {}
     for name, value in {**preset_values(preset), **chosen}.items():
         group, _, leaf = name.rpartition(".")
@@ -143,4 +147,6 @@ def make_settings(preset: str = "default", options: Mapping[str, object] | None 
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "value_error":  # of our own validators, whose sentences name the options
+            raise BadInput(str(first["ctx"]["error"]), where=where) from None
         raise BadInput(f"option '{where}': {first['msg']} (got {first['input']!r})", where=where) from None

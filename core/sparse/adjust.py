@@ -12,12 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
 from core.checks.stats import model_stats
+from core.geometry.lens import REDUCED, LensModel
 from core.sparse.keypoint_alignment import Aligned
 from core.sparse.lens_trial import (
     TRIAL_POINTS,
@@ -30,7 +32,6 @@ from core.sparse.lens_trial import (
 from core.sparse.points import move_points, observe
 from core.sparse.trimming import (
     POINT_LOSS_PX,
-    TERMS,
     Trimming,
     keep_agreeing,
     set_lens,
@@ -54,9 +55,6 @@ ROBUST_ITERATIONS = 25
 
 HOPELESS_PX = 50.0
 """Observations farther off than this are dropped before the first adjustment."""
-
-PRINCIPAL_POINT = slice(2, 4)
-"""Place of cx, cy in the parameters of OPENCV_FISHEYE."""
 
 ALIGNMENTS = 2
 """The first finds its warps by a model of keypoints that are not aligned."""
@@ -94,6 +92,7 @@ def adjust(
     align: Align | None = None,
     trim_tracks: bool = False,
     judge_radial: bool = False,
+    hold_lens: bool = False,
     loss_scale_px: float = 1.0,
     threads: int = 1,
     progress: Progress = lambda share, message: None,
@@ -108,44 +107,54 @@ def adjust(
         align: moves keypoints before cameras follow from them; None leaves them.
         trim_tracks: take cameras and lens from the tracks that agree best.
         judge_radial: do without radial terms that these tracks do not ask for.
+        hold_lens: refine no parameter of the camera; the two that ask the tracks for the lens are then not asked.
         loss_scale_px: residuals above this count less; 0 counts them all by their squares.
         threads: of Ceres; more than one is nearly but not exactly repeatable.
         progress: called with the share done.
     """
     work = pycolmap.Reconstruction(model)
     before = model_stats(work).mean_reprojection_error_px
-    schedule = [adjustment_options(False, 0.0, threads)]
+    lens = LensModel(next(iter(work.cameras.values())).model_name)
+    reduced = REDUCED[lens]
+    options_of = partial(adjustment_options, threads=threads, hold_lens=hold_lens)
+    schedule = [options_of(False, 0.0)]
     if loss_scale_px > 0:
         # Squares first: they converge in a fifth of the time and leave little to do.
-        schedule.append(adjustment_options(False, loss_scale_px, threads))
+        schedule.append(options_of(False, loss_scale_px))
     # Keypoints that move next need no model that fits them where they are.
     most = MAX_ROUNDS if align is None else len(schedule)
     rounds, stable = _refine(work, cache, options, schedule, most, lambda r: progress(0.5 * r, "bundle adjustment"))
     progress(0.5, "keypoints and tracks")
-    trimming, aligned = _settle(work, schedule[-1], align, trim_tracks, threads)
+    # A model without radial terms has one stand-in, for both stages of trimming.
+    stages: Sequence[str] = (lens,) if hold_lens else reduced[1:] or reduced
+    trimmer = partial(trim, options=partial(options_of, False), hold_lens=hold_lens) if trim_tracks else None
+    trimming, aligned = _settle(work, schedule[-1], align, trimmer, stages)
     progress(0.7, "lens")
-    trial_options = adjustment_options(refine_principal_point, loss_scale_px, threads)
-    point, radial = _judge_lens(work, trial_options, trimming is not None, judge_radial)
-    terms = (radial.number,)
-    if trimming is not None and (point.refined or terms != TERMS[-1:]):
-        more = trim(work, lambda scale: adjustment_options(point.refined, scale, threads), terms)
+    point, radial = PrincipalPoint(False, "off"), RadialTerms(len(reduced) - 1, "off")
+    if not hold_lens:
+        trial_options = options_of(refine_principal_point, loss_scale_px)
+        point, radial = _judge_lens(work, trial_options, trimming is not None, judge_radial and len(reduced) > 1)
+        radial = replace(radial, number=min(radial.number, len(reduced) - 1))
+    stages = stages if hold_lens else (reduced[radial.number],)
+    if trimming is not None and (point.refined or reduced[radial.number] != reduced[-1]):
+        more = trim(work, partial(options_of, point.refined), stages)
         before_px = more.focal_before_px if radial.number == 0 else trimming.focal_before_px
         trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=before_px)
     elif point.refined:
-        free = adjustment_options(True, loss_scale_px, threads)
+        free = options_of(True, loss_scale_px)
         further, stable = _refine(
             work, cache, options, [free], MAX_ROUNDS, lambda r: progress(0.7 + 0.3 * r, "adjustment")
         )
         rounds += further
     if trimming is not None:
         progress(0.9, "points")
-        set_lens(work, 4)
+        set_lens(work, lens)
         _retrack(work, cache, options, align)
-        if radial.number:
-            # Radial terms trade against the focal length: the completed tracks say more of both.
-            more = trim(work, lambda scale: adjustment_options(False, scale, threads), terms)
+        if radial.number or hold_lens:
+            # Radial terms trade against the focal length: the completed tracks say more of both, and of the poses.
+            more = trim(work, partial(options_of, False), stages, hold_lens=hold_lens)
             trimming = replace(more, rounds=trimming.rounds + more.rounds, focal_before_px=trimming.focal_before_px)
-            set_lens(work, 4)
+            set_lens(work, lens)
         _filter(work, cache, options)
     after = model_stats(work).mean_reprojection_error_px
     return Adjustment(work, rounds, stable, before, after, point, radial, trimming, aligned)
@@ -155,19 +164,21 @@ def _settle(
     work: pycolmap.Reconstruction,
     options: pycolmap.BundleAdjustmentOptions,
     align: Align | None,
-    trim_tracks: bool,
-    threads: int,
+    trimmer: Callable[..., Trimming] | None,
+    stages: Sequence[str],
 ) -> tuple[Trimming | None, Aligned | None]:
-    """Align keypoints and adjust in turns, in place; what the last choice of tracks and the first alignment did."""
+    """Align keypoints and adjust in turns, in place; what the last choice of tracks and the first alignment did.
+
+    `trimmer` is `trim` of a model and the lenses of its stages, None where all tracks have a say.
+    """
     trimming: Trimming | None = None
     aligned: Aligned | None = None
     for turn in range(ALIGNMENTS if align is not None else 1):
         if align is not None:
             done = align(work, True)
             aligned = aligned or done
-        if trim_tracks:
-            terms = TERMS if turn == 0 else TERMS[-1:]
-            found = trim(work, lambda scale: adjustment_options(False, scale, threads), terms)
+        if trimmer is not None:
+            found = trimmer(work, lenses=stages if turn == 0 else stages[-1:])
             trimming = found if trimming is None else replace(found, rounds=trimming.rounds + found.rounds)
         elif align is not None:
             solve(work, options)
@@ -185,7 +196,7 @@ def _judge_lens(
         trimmed: the tracks that agree best are asked, not all.
         judge_radial: judge the radial terms too, which takes trimmed tracks.
     """
-    point, radial = PrincipalPoint(False, "off"), RadialTerms(TERMS[-1], "off")
+    point, radial = PrincipalPoint(False, "off"), RadialTerms(2, "off")
     judge_radial = judge_radial and trimmed
     if options.refine_principal_point or judge_radial:
         said = pycolmap.Reconstruction(model)
@@ -197,11 +208,15 @@ def _judge_lens(
     return point, radial
 
 
-def adjustment_options(principal_point: bool, loss_scale_px: float, threads: int) -> pycolmap.BundleAdjustmentOptions:
-    """`BundleAdjustmentOptions` that run until converged."""
+def adjustment_options(
+    principal_point: bool, loss_scale_px: float, threads: int, hold_lens: bool = False
+) -> pycolmap.BundleAdjustmentOptions:
+    """`BundleAdjustmentOptions` that run until converged; with `hold_lens` no parameter of the camera is free."""
     options = pycolmap.BundleAdjustmentOptions()
     options.print_summary = False
     options.refine_principal_point = principal_point
+    if hold_lens:
+        options.refine_focal_length = options.refine_extra_params = False
     if loss_scale_px > 0:
         options.ceres.loss_function_type = pycolmap.LossFunctionType.CAUCHY
         options.ceres.loss_function_scale = loss_scale_px

@@ -181,7 +181,7 @@ class _Window:
 
     def _whole(self, model: pycolmap.Reconstruction) -> pycolmap.Reconstruction:
         """A model of the search with everything that was held or left out."""
-        if not self._settings.refine_distortion:
+        if self._settings.refine_lens and not self._settings.refine_distortion:
             model = free_distortion(self._search, model, self._options)
         if self._search is self._full:
             return model

@@ -1,7 +1,7 @@
 """The focal length, found from the video: map small spans from a start value and let the mapper refine it.
 
-The lens is modelled with one radial term here (SIMPLE_RADIAL_FISHEYE: an equidistant lens and k1): a short span
-does not determine more, and k1 to k4 beside a free focal length would trade against it.
+The lens is modelled with one radial term here (with the default model SIMPLE_RADIAL_FISHEYE: an equidistant lens and
+k1): a short span does not determine more, and k1 to k4 beside a free focal length would trade against it.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import pycolmap
 
 from core.checks.stats import model_stats
 from core.features.io import FrameFeatures, strongest
+from core.geometry.lens import lens_of
 from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher
 from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
@@ -98,7 +99,7 @@ def choose_spans(keyframes: Sequence[int], length: int, count: int, load: Load) 
 def find_focal(
     span: Sequence[int], camera: pycolmap.Camera, settings: Settings, load: Load, report: Report
 ) -> SpanFocal:
-    """Map one span from `camera` (of the model `core.sparse.lens.ESTIMATE_MODEL`) and refine its focal length and k1.
+    """Map one span from `camera` (of the model `core.sparse.lens.estimate_model`) and refine its focal length and k1.
 
     A span that comes apart, or whose lens runs away, is mapped again with wider pairs too. What maps more of it counts,
     a lens that has not run away before one that has.
@@ -161,7 +162,7 @@ class _Span:
         return SpanFocal(
             *bounds,
             float(lens.mean_focal_length()),
-            float(lens.params[3]),
+            lens_of(lens).radial[0],
             stats.registered_images,
             stats.points3D,
             stats.mean_reprojection_error_px,

@@ -179,6 +179,7 @@ def _join(
     joined = densify(cache, together, build_tracks(table), read_frames(database_of(graph), 0, n_frames), options)
     adjustment = pycolmap.BundleAdjustmentOptions()
     adjustment.print_summary = False
+    adjustment.refine_focal_length = adjustment.refine_extra_params = settings.refine_lens
     adjustment.ceres.solver_options.num_threads = threads
     pycolmap.bundle_adjustment(joined, adjustment)
     stats, parts = model_stats(joined), (model_stats(model), model_stats(piece))

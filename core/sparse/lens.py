@@ -8,12 +8,9 @@ from collections.abc import Sequence
 import pycolmap
 
 from core.flags import Flag, FlagFields, Severity
+from core.geometry.lens import REDUCED, Lens, LensModel, make_lens, scale_to
 from core.settings.groups import CameraSettings
 from core.stage import Facts
-
-MODEL = "OPENCV_FISHEYE"
-ESTIMATE_MODEL = "SIMPLE_RADIAL_FISHEYE"
-"""Of the short spans that the estimate maps, see `core.sparse.focal`."""
 
 MIN_REGISTERED, MIN_POINTS = 8, 100
 """Registered images and points below which a start has found nothing."""
@@ -41,14 +38,25 @@ UNKNOWN = "lens_unknown"
 """Reason, and code of the flag, of a lens that is not used because the starts do not tell it."""
 
 
-def focal_from_fov(fov_deg: float, source_width: int) -> float:
-    """Focal length in px of an equidistant lens (r = f theta) with this horizontal view of the source frame."""
-    return source_width / 2.0 / math.radians(fov_deg / 2.0)
+def focal_from_fov(fov_deg: float, source_width: int, model: str = LensModel.OPENCV_FISHEYE) -> float:
+    """Focal length in px of a lens with this horizontal view of the source frame and without distortion.
+
+    That is an equidistant lens (r = f theta), or with a perspective model a pinhole (r = f tan theta).
+    """
+    half = math.radians(fov_deg / 2.0)
+    return source_width / 2.0 / (half if model == LensModel.OPENCV_FISHEYE else math.tan(half))
 
 
-def fov_from_focal(focal_px: float, source_width: int) -> float:
+def fov_from_focal(focal_px: float, source_width: int, model: str = LensModel.OPENCV_FISHEYE) -> float:
     """The inverse of `focal_from_fov`, in degrees."""
-    return 2.0 * math.degrees(source_width / 2.0 / focal_px)
+    radius = source_width / 2.0 / focal_px
+    return 2.0 * math.degrees(radius if model == LensModel.OPENCV_FISHEYE else math.atan(radius))
+
+
+def estimate_model(model: str) -> str:
+    """COLMAP's model of the short spans that the estimate maps: one radial term where the lens has any."""
+    reduced = REDUCED[LensModel(model)]
+    return reduced[min(1, len(reduced) - 1)]
 
 
 def principal_point(frames: Facts, settings: CameraSettings) -> tuple[float, float]:
@@ -62,14 +70,14 @@ def principal_point(frames: Facts, settings: CameraSettings) -> tuple[float, flo
 def start_lens(frames: Facts, settings: CameraSettings, fov_deg: float) -> pycolmap.Camera:
     """`pycolmap.Camera` of the estimate's lens model for one start; its focal length counts as a prior."""
     width, height = _size(frames)
-    cx, cy = principal_point(frames, settings)
-    focal = focal_from_fov(fov_deg, int(frames["source_width"]))
+    focal = focal_from_fov(fov_deg, int(frames["source_width"]), settings.model)
+    model = estimate_model(settings.model)
     return pycolmap.Camera(
         camera_id=1,
-        model=ESTIMATE_MODEL,
+        model=model,
         width=width,
         height=height,
-        params=[focal, cx, cy, 0.0],
+        params=Lens(focal, focal, *principal_point(frames, settings)).params(model),
         has_prior_focal_length=True,
     )
 
@@ -77,35 +85,44 @@ def start_lens(frames: Facts, settings: CameraSettings, fov_deg: float) -> pycol
 def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]) -> Facts:
     """Content of ``camera.json``, with the starts it was chosen from.
 
-    A given field of view counts before everything else; without usable starts it is COLMAP's default, 1.2 times
-    the longer side of the crop. `reason` says why an estimate was asked for and not used.
+    A calibration or a given field of view counts before everything else; without usable starts it is COLMAP's
+    default, 1.2 times the longer side of the crop. `reason` says why an estimate was asked for and not used.
+
+    Raises:
+        BadInput: the calibration is of a picture of another shape.
     """
     width, height = _size(frames)
-    source_width = int(frames["source_width"])
+    source_width, model = int(frames["source_width"]), settings.model
     focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
     chosen: Facts | None = None
-    if settings.fov_deg is not None:
-        focal, origin = focal_from_fov(settings.fov_deg, source_width), "given"
+    told = _told_lens(frames, settings)
+    if told is not None:
+        focal, origin = told.focal_px, "calibration"
+    elif settings.fov_deg is not None:
+        focal, origin = focal_from_fov(settings.fov_deg, source_width, model), "given"
     elif settings.focal == "estimate":
-        chosen = _best_start(starts, source_width)
+        chosen = _best_start(starts, source_width, model)
         if chosen is None:
             reason = UNKNOWN if any(_found_a_model(start) for start in starts) else "no_start_found_a_model"
-        elif _ran_away_alone(chosen, starts, source_width):
+        elif _ran_away_alone(chosen, starts, source_width, model):
             chosen, reason = None, UNKNOWN
         else:
             focal, k1, origin = float(chosen["focal_px"]), float(chosen["k1"]), "estimated"
     agreement = _agreement(starts, focal) if chosen is not None else None
+    lens = told or Lens(focal, focal, *principal_point(frames, settings), (k1, 0.0, 0.0, 0.0))
     return {
-        "model": MODEL,
+        "model": model,
         "width": width,
         "height": height,
-        "params": [focal, focal, *principal_point(frames, settings), k1, 0.0, 0.0, 0.0],
+        "params": lens.params(model),
         "focal_from": origin,
         "reason": reason,
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
         "agreement": agreement,
         "starts": [dict(start) for start in starts],
-        "flags": [] if settings.focal != "estimate" or origin == "given" else _doubts(agreement, reason),
+        "flags": []
+        if settings.focal != "estimate" or origin in ("given", "calibration")
+        else _doubts(agreement, reason),
     }
 
 
@@ -120,13 +137,22 @@ def spans_said(camera: Facts) -> list[float]:
     ]
 
 
-def _best_start(starts: Sequence[Facts], source_width: int) -> Facts | None:
+def _told_lens(frames: Facts, settings: CameraSettings) -> Lens | None:
+    """The lens of a calibration on the crop, at the size of the video; None without a calibration."""
+    if settings.params is None or settings.size_px is None:
+        return None
+    factor = scale_to(settings.size_px, int(frames["source_width"]), int(frames["source_height"]))
+    x0, y0 = (float(value) for value in frames["crop"][:2])
+    return make_lens(settings.model, settings.params).scaled(factor).cropped(x0, y0)
+
+
+def _best_start(starts: Sequence[Facts], source_width: int, model: str) -> Facts | None:
     usable = [
         start
         for start in starts
         if _found_a_model(start)
         and abs(start["k1"]) < MAX_K1
-        and FOV_RANGE_DEG[0] <= fov_from_focal(float(start["focal_px"]), source_width) <= FOV_RANGE_DEG[1]
+        and FOV_RANGE_DEG[0] <= fov_from_focal(float(start["focal_px"]), source_width, model) <= FOV_RANGE_DEG[1]
     ]
     if not usable:
         return None
@@ -141,9 +167,9 @@ def _found_a_model(start: Facts) -> bool:
     return bool(start["registered"] >= MIN_REGISTERED and start["points3D"] >= MIN_POINTS)
 
 
-def _ran_away_alone(chosen: Facts, starts: Sequence[Facts], source_width: int) -> bool:
+def _ran_away_alone(chosen: Facts, starts: Sequence[Facts], source_width: int, model: str) -> bool:
     """Whether no other start agrees with this one, and what it found is hardly a lens."""
-    fov = fov_from_focal(float(chosen["focal_px"]), source_width)
+    fov = fov_from_focal(float(chosen["focal_px"]), source_width, model)
     hardly = not SOLE_FOV_RANGE_DEG[0] <= fov <= SOLE_FOV_RANGE_DEG[1]
     return hardly and len(starts) > 1 and len(_near(starts, float(chosen["focal_px"]))) <= 1
 

@@ -74,7 +74,7 @@ class RadialTerms:
     reason: str
     """``significant``, ``insignificant``, or why nobody knows: ``off``, ``few_images``, ``no_covariance``."""
     first: float | None = None
-    """Deviation of the first from 0 where the second is held at 0, in sigmas."""
+    """Deviation of the first from 0 where the second is held at 0 or is not part of the model, in sigmas."""
     second: float | None = None
     """Deviation of the second from 0 beside the first, in sigmas."""
 
@@ -129,13 +129,17 @@ def judge_principal_point(trial: Trial) -> PrincipalPoint:
 
 
 def judge_radial_terms(trial: Trial) -> RadialTerms:
-    """How many of the two radial terms of a trial differ from 0."""
+    """How many of the one or two radial terms of a trial differ from 0."""
     if trial.covariance is None or trial.camera is None:
         return RadialTerms(2, trial.reason)
     radial = trial.camera.extra_params_idxs()
-    k1, k2 = np.array(trial.camera.params)[radial]
     covariance = trial.covariance[np.ix_(radial, radial)]
     tiny = np.finfo(float).tiny
+    if len(radial) == 1:
+        alone = float(abs(np.array(trial.camera.params)[radial][0]) / np.sqrt(max(covariance[0, 0], tiny)))
+        found = alone >= MIN_FIRST_SIGMAS
+        return RadialTerms(int(found), "significant" if found else "insignificant", alone)
+    k1, k2 = np.array(trial.camera.params)[radial]
     second = float(abs(k2) / np.sqrt(max(covariance[1, 1], tiny)))
     # The first given that the second is 0: mean and variance of a normal conditioned on its other variable.
     slope = covariance[0, 1] / max(covariance[1, 1], tiny)

@@ -57,8 +57,9 @@ def mapper_options(
     options.extract_colors = False
     # Four free distortion terms fold over while few images hold them: on a lens close to a pinhole 3 of 60 images
     # registered with them free and 60 with them held.
-    options.ba_refine_extra_params = settings.refine_distortion
-    options.mapper.abs_pose_refine_extra_params = settings.refine_distortion
+    options.ba_refine_extra_params = settings.refine_distortion and settings.refine_lens
+    options.mapper.abs_pose_refine_extra_params = options.ba_refine_extra_params
+    options.ba_refine_focal_length = options.mapper.abs_pose_refine_focal_length = settings.refine_lens
     # Ten seconds for every image that it fails on: a dark stretch took minutes per start. What it does register hangs
     # on the model by no point.
     options.structure_less_registration_fallback = False

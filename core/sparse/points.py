@@ -1,7 +1,7 @@
 """Points moved to where fixed cameras see them: each for itself, in a twentieth of the time of a bundle adjuster.
 
-Levenberg and Marquardt's method with Cauchy's loss, weighted anew at each step. The lens is COLMAP's family of
-fisheye models (`SIMPLE_FISHEYE`, `SIMPLE_RADIAL_FISHEYE`, `RADIAL_FISHEYE`, `OPENCV_FISHEYE`).
+Levenberg and Marquardt's method with Cauchy's loss, weighted anew at each step. The lens is any of
+`core.geometry.lens.PARAMETERS`, as the vector of `Lens.vector`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.fisheye import fisheye_radius_and_slope
+from core.geometry.lens import lens_of
 from core.jit import compiled
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def move_points(model: pycolmap.Reconstruction, seen: Observations, loss_px: flo
     """Move all points of a model in place; cameras stay.
 
     Args:
-        model: `pycolmap.Reconstruction` whose images share one fisheye camera.
+        model: `pycolmap.Reconstruction` whose images share one camera.
         seen: its observations.
         loss_px: scale of Cauchy's loss.
 
@@ -109,14 +110,9 @@ def _places(model: pycolmap.Reconstruction, seen: Observations) -> F64:
 
 
 def _cameras(model: pycolmap.Reconstruction, seen: Observations) -> tuple[F64, F64, F64]:
-    """Rotations (f, 3, 3), translations (f, 3) and (fx, fy, cx, cy, k1, k2, k3, k4)."""
-    camera = next(iter(model.cameras.values()))
-    params, lens = np.array(camera.params), np.zeros(8)
-    lens[:2] = params[camera.focal_length_idxs()]
-    lens[2:4] = params[camera.principal_point_idxs()]
-    radial = params[camera.extra_params_idxs()]
-    lens[4 : 4 + len(radial)] = radial
-    return *poses_of(model, seen.image_ids.tolist()), lens
+    """Rotations (f, 3, 3), translations (f, 3) and `Lens.vector`."""
+    lens = lens_of(next(iter(model.cameras.values())))
+    return *poses_of(model, seen.image_ids.tolist()), lens.vector()
 
 
 def poses_of(model: pycolmap.Reconstruction, image_ids: Sequence[int]) -> tuple[F64, F64]:
@@ -144,11 +140,34 @@ def _first(order: I64, offsets: I64, image: I64, wanted: I64, n_images: int) -> 
 
 
 @compiled
+def _project_perspective(x: float, y: float, z: float, R: F64, lens: F64, jacobian: F64) -> tuple[float, float]:
+    """As `_project`, of a point in the camera's frame that a perspective lens sees (OpenCV's k1, k2, p1, p2)."""
+    # A point in the camera's own plane has no image; the limit keeps the arithmetic finite.
+    depth = z if abs(z) > 1e-150 else 1e-150
+    a, b = x / depth, y / depth
+    k1, k2, p1, p2 = lens[4], lens[5], lens[8], lens[9]
+    r2 = a * a + b * b
+    radial, slope = 1.0 + r2 * (k1 + r2 * k2), 2.0 * (k1 + 2.0 * k2 * r2)
+    bent_a = a * radial + 2.0 * p1 * a * b + p2 * (r2 + 2.0 * a * a)
+    bent_b = b * radial + p1 * (r2 + 2.0 * b * b) + 2.0 * p2 * a * b
+    aa = radial + a * a * slope + 2.0 * p1 * b + 6.0 * p2 * a
+    ab = a * b * slope + 2.0 * p1 * a + 2.0 * p2 * b
+    bb = radial + b * b * slope + 6.0 * p1 * b + 2.0 * p2 * a
+    for j in range(3):
+        da, db = (R[0, j] - a * R[2, j]) / depth, (R[1, j] - b * R[2, j]) / depth
+        jacobian[0, j] = lens[0] * (aa * da + ab * db)
+        jacobian[1, j] = lens[1] * (ab * da + bb * db)
+    return lens[2] + lens[0] * bent_a, lens[3] + lens[1] * bent_b
+
+
+@compiled
 def _project(place: F64, R: F64, t: F64, lens: F64, jacobian: F64) -> tuple[float, float]:
     """Pixel where a camera sees a place (3,); the derivative by the place goes to `jacobian` (2, 3)."""
     x = R[0, 0] * place[0] + R[0, 1] * place[1] + R[0, 2] * place[2] + t[0]
     y = R[1, 0] * place[0] + R[1, 1] * place[1] + R[1, 2] * place[2] + t[1]
     z = R[2, 0] * place[0] + R[2, 1] * place[1] + R[2, 2] * place[2] + t[2]
+    if lens[10] == 1.0:
+        return _project_perspective(x, y, z, R, lens, jacobian)
     # On the axis the direction from it is any; the limit is that of a very small radius.
     radius = max(np.sqrt(x * x + y * y), 1e-9 * abs(z), 1e-150)
     theta = np.arctan2(radius, z)

@@ -21,6 +21,7 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
+from core.geometry.lens import REDUCED, LensModel, lens_of
 from core.sparse.points import Observations, errors_px, move_points, observe
 
 F64 = NDArray[np.float64]
@@ -33,8 +34,8 @@ PER_IMAGE = 150
 MIN_PER_IMAGE = 40
 """An image with fewer tracks in the better part keeps its best ones beyond it."""
 
-TERMS = (1, 2)
-"""Numbers of radial terms that the lens has in the first and in the second stage of trimming."""
+TRIMMED_AS = REDUCED[LensModel.OPENCV_FISHEYE][1:]
+"""COLMAP's models that stand in for the default lens in the first and in the second stage of trimming."""
 MAX_ROUNDS = 12
 """Largest number of rounds of one stage."""
 ADMITTED = 2.5
@@ -42,13 +43,11 @@ ADMITTED = 2.5
 ADMITTED_PER_IMAGE = 400
 """Largest number of tracks that are admitted for an image, best first. More take longer and move nothing."""
 ADMITTED_ROUNDS = 3
-"""Number of rounds of adjustment with the admitted tracks."""
+"""Number of rounds of adjustment with the admitted tracks, and of each stage when the lens is held."""
 SETTLED = 0.001
 """Rounds end when the focal length changed by less than this share."""
 POINT_LOSS_PX = 1.0
 """Scale of the loss by which points follow their cameras."""
-
-LENSES = {0: "SIMPLE_FISHEYE", 1: "SIMPLE_RADIAL_FISHEYE", 2: "RADIAL_FISHEYE", 4: "OPENCV_FISHEYE"}
 
 Options = Callable[[float], pycolmap.BundleAdjustmentOptions]
 """`BundleAdjustmentOptions` for a scale of Cauchy's loss in px; which parameters are free is the caller's."""
@@ -73,21 +72,26 @@ class Trimming:
         return self.focal_after_px / self.focal_before_px - 1.0
 
 
-def trim(model: pycolmap.Reconstruction, options: Options, terms: Sequence[int] = TERMS) -> Trimming:
+def trim(
+    model: pycolmap.Reconstruction, options: Options, lenses: Sequence[str] = TRIMMED_AS, *, hold_lens: bool = False
+) -> Trimming:
     """Adjust cameras and lens in place to the better part of the tracks; all points then follow from them.
 
     Args:
-        model: `pycolmap.Reconstruction` with one fisheye camera, adjusted; its camera comes out as RADIAL_FISHEYE.
+        model: `pycolmap.Reconstruction` with one camera, adjusted.
         options: of the adjustments.
-        terms: radial terms of the lens, stage by stage.
+        lenses: COLMAP's model of the lens, stage by stage; the camera comes out as the last one.
+        hold_lens: leave the lens as it is. The focal length then says nothing of when the choice has settled.
     """
     before = focal = _focal(model)
     rounds, kept, scale = 0, 0, 0.0
     seen = observe(model)
     errors = errors_px(model, seen)
-    stages = [(number, MAX_ROUNDS, False) for number in terms] + [(terms[-1], ADMITTED_ROUNDS, True)]
-    for number, most, admit in stages:
-        set_lens(model, number)
+    first = ADMITTED_ROUNDS if hold_lens else MAX_ROUNDS
+    stages = [*((name, first, False) for name in lenses[-1 if hold_lens else 0 :]), (lenses[-1], ADMITTED_ROUNDS, True)]
+    for name, most, admit in stages:
+        if not hold_lens:
+            set_lens(model, name)
         for _ in range(most):
             noise = _noise(errors, seen)
             chosen = agreeing(noise, seen)
@@ -104,22 +108,17 @@ def trim(model: pycolmap.Reconstruction, options: Options, terms: Sequence[int] 
             errors = move_points(model, seen, POINT_LOSS_PX)
             rounds += 1
             last, focal = focal, _focal(model)
-            if abs(focal / last - 1.0) < SETTLED:
+            if not hold_lens and abs(focal / last - 1.0) < SETTLED:
                 break
     return Trimming(rounds, kept, scale, before, focal)
 
 
-def set_lens(model: pycolmap.Reconstruction, terms: int) -> None:
-    """Give the one camera of a model so many radial terms in place: 0 to 2, or the 4 of OPENCV_FISHEYE."""
+def set_lens(model: pycolmap.Reconstruction, name: str) -> None:
+    """Give the one camera of a model another of `core.geometry.lens.PARAMETERS` in place."""
     camera = next(iter(model.cameras.values()))
-    params = np.array(camera.params)
-    center, focal = params[camera.principal_point_idxs()], params[camera.focal_length_idxs()]
-    distortion = np.zeros(4)
-    found = params[camera.extra_params_idxs()]
-    distortion[: len(found)] = found
-    camera.model = getattr(pycolmap.CameraModelId, LENSES[terms])
-    focals = focal.mean().repeat(2 if terms == 4 else 1)
-    camera.params = np.concatenate([focals, center, distortion[:terms]])
+    params = lens_of(camera).params(name)
+    camera.model = getattr(pycolmap.CameraModelId, name)
+    camera.params = np.array(params)
 
 
 def keep_agreeing(model: pycolmap.Reconstruction, per_image: int = PER_IMAGE) -> None:

@@ -14,9 +14,10 @@ from core.checks.lens import check_left, check_shift
 from core.checks.model import check_model, is_wrong
 from core.checks.stats import model_stats
 from core.errors import StageFailed
+from core.geometry.lens import lens_of
 from core.io.frames import images_folder, write_registered
 from core.io.sparse import read_model, write_model
-from core.sparse.adjust import PRINCIPAL_POINT, Adjustment, Align, adjust
+from core.sparse.adjust import Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.keypoint_alignment import align_keypoints
@@ -91,6 +92,7 @@ def _adjust(task: StageTask, model: pycolmap.Reconstruction) -> Adjustment:
         align=_aligner(task) if task.settings.model.align_keypoints else None,
         trim_tracks=task.settings.model.trim_tracks,
         judge_radial=task.settings.model.radial_terms == "auto",
+        hold_lens=not task.settings.mapper.refine_lens,
         loss_scale_px=task.settings.model.loss_scale_px,
         threads=task.settings.compute.threads or 1,  # 0 asks for a result that repeats to the last bit
         progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
@@ -122,16 +124,19 @@ def _facts(
     flags = check_model(model, stats, table, n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:
         flags += filter(None, [check_shift(adjustment.trimming.shift)])
-    params = np.array(next(iter(model.cameras.values())).params)
-    flags += filter(None, [check_left(float(params[:2].mean()), said_px)])
+    camera = next(iter(model.cameras.values()))
+    lens = lens_of(camera)
+    flags += filter(None, [check_left(lens.focal_px, said_px)])
     return {
         "registered_images": stats.registered_images,
         "points3D": stats.points3D,
         "mean_reprojection_error_px": stats.mean_reprojection_error_px,
         "median_reprojection_error_px": stats.median_reprojection_error_px,
         "track_length": stats.mean_track_length,
-        "focal_px": float(params[:2].mean()),
-        "principal_point_px": params[PRINCIPAL_POINT].tolist(),
+        "lens_model": camera.model_name,
+        "lens_params": lens.params(camera.model_name),
+        "focal_px": lens.focal_px,
+        "principal_point_px": [lens.cx, lens.cy],
         "principal_point_refined": adjustment is not None and adjustment.principal_point.refined,
         "adjustment": None if adjustment is None else _adjustment_facts(adjustment),
         "checks": [flag.to_dict() for flag in flags],

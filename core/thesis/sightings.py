@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.boxes import in_box
+from core.geometry.lens import lens_of
 from core.geometry.pose import camera_center, transform
 from core.mapping.surface import Surface
 from core.scene.defect import Sighting
@@ -47,6 +48,7 @@ def _visible_share(points: F64, views: Views, row: int, center: F64, surface: Su
     in_camera = transform(points, views.R[row], views.t[row])
     xy = np.asarray(views.camera.img_from_cam(in_camera), dtype=np.float64)
     inside = in_box(xy, (0, 0, views.camera.width, views.camera.height)) & (in_camera[:, 2] > 0)
+    inside &= lens_of(views.camera).before_fold(in_camera)
     if inside.mean() < MIN_VISIBLE_SHARE:
         return 0.0
     shown = points[inside]

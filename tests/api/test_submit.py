@@ -182,6 +182,45 @@ def test_files_that_no_run_can_use_are_refused(
     assert backend.services.artifacts.list() == []
 
 
+LENS = b"1 PINHOLE 480 360 260 260 240 180\n"
+"""COLMAP's camera of a picture of half the size of the sample's frames."""
+
+
+def test_a_calibration_tells_the_lens_and_named_options_count_before_it(backend: Backend, client: TestClient) -> None:
+    answer = post(client, VIDEO.read_bytes(), calibration=LENS)
+    assert answer.status_code == 202, answer.text
+    told = {"camera.model": "PINHOLE", "camera.params": [260, 260, 240, 180], "camera.size_px": [480, 360]}
+    assert answer.json()["parameters"]["options"] == told
+    other = {"camera.params": [250, 250, 240, 180], "mapper.refine_lens": True}
+    answer = post(client, VIDEO.read_bytes(), calibration=LENS, parameters=json.dumps({"options": other}))
+    assert answer.status_code == 202, answer.text
+    assert answer.json()["parameters"]["options"] == {**told, **other}
+    first, second = sorted((row.settings for row in rows(backend)), key=lambda kept: kept["mapper"]["refine_lens"])
+    assert (first["camera"]["model"], first["camera"]["params"][0], first["camera"]["size_px"]) == (
+        "PINHOLE",
+        260,
+        [480, 360],
+    )
+    assert (second["camera"]["params"][0], second["mapper"]["refine_lens"]) == (250, True)
+
+
+@pytest.mark.parametrize(
+    ("calibration", "status", "words"),
+    [
+        (b"1 FULL_OPENCV 480 360 1 2 3 4 5 6 7 8 9 10 11 12\n", 422, "'FULL_OPENCV' is not read"),
+        (b"1 PINHOLE 480 480 260 260 240 240\n", 422, "480x480 and the video has 960x720"),
+        (b"#" * ((1 << 20) + 1), 413, "1048576"),
+    ],
+)
+def test_a_calibration_that_tells_no_lens_of_the_video_is_refused(
+    backend: Backend, client: TestClient, calibration: bytes, status: int, words: str
+) -> None:
+    answer = post(client, VIDEO.read_bytes(), calibration=calibration)
+    assert answer.status_code == status
+    assert words in answer.text
+    assert (rows(backend), leftovers(backend)) == ([], [])
+
+
 def form(*parts: tuple[str, bytes]) -> bytes:
     return b"".join(b"--b\r\n" + name.encode() + b"\r\n\r\n" + data + b"\r\n" for name, data in parts) + b"--b--\r\n"
 

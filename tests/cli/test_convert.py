@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from cli.annotation_file import annotation_file
+from cli.input_files import annotation_file
 from cli.main import main
 from core.annotations.load import load_annotations
 from core.annotations.placed import place

@@ -46,6 +46,17 @@ def test_roi_and_truncated() -> None:
     assert roi == {"roi.x0": 0.1, "roi.y0": 0.2, "roi.x1": 0.8, "roi.y1": 0.9}
 
 
+def test_a_calibration_counts_before_the_file_of_parameters_and_after_what_is_set_by_name(tmp_path: Path) -> None:
+    lens, file = tmp_path / "cameras.txt", tmp_path / "p.json"
+    lens.write_text("1 SIMPLE_RADIAL 480 360 260 240 180 -0.1\n")
+    file.write_text(json.dumps({"options": {"camera.model": "SIMPLE_RADIAL", "matching.window": 7}}))
+    given = ("--parameters", str(file), "--calibration", str(lens), "--set", "mapper.refine_lens=true")
+    settings = parameters.from_arguments(parse(*given)).settings()
+    assert (settings.camera.model, settings.camera.size_px) == ("OPENCV", (480, 360))
+    assert settings.camera.params == (260, 260, 240, 180, -0.1, 0, 0, 0)
+    assert (settings.matching.window, settings.mapper.refine_lens) == (7, True)
+
+
 @pytest.mark.parametrize("text", ["", "1", "0,0,1", "a,b,c,d", "0.5,0,0.5,1", "0,0.9,1,0.1", "-0.1,0,1,1", "0,0,1,1.2"])
 def test_roi_that_cannot_be(text: str) -> None:
     with pytest.raises(BadInput, match=r"neither|empty or outside"):

@@ -95,6 +95,22 @@ def test_submit_watch_and_download_the_sample(
 
 
 @pytest.mark.usefixtures("unprobed")
+def test_submit_tells_the_lens_of_a_calibration(
+    backend: Backend, call: Callable[..., tuple[int, str]], video: Path, tmp_path: Path
+) -> None:
+    lens = tmp_path / "cameras.txt"
+    lens.write_text("1 PINHOLE 480 360 260 260 240 180\n")
+    code, out = call("submit", str(video), "--calibration", str(lens), "--set", "mapper.refine_lens=true")
+    assert code == exits.DONE
+    kept = backend.services.inspections.get(out.strip()).settings
+    assert (kept["camera"]["model"], kept["camera"]["params"]) == ("PINHOLE", [260, 260, 240, 180])
+    assert kept["mapper"]["refine_lens"]
+    lens.write_text("1 PINHOLE 480 360 260 260\n")
+    assert call("submit", str(video), "--calibration", str(lens)) == (exits.BAD_INPUT, "")
+    assert len(call("status")[1].splitlines()) == 1, "nothing was sent"
+
+
+@pytest.mark.usefixtures("unprobed")
 def test_a_label_of_somebody_else_is_one_line_of_a_list(call: Callable[..., tuple[int, str]], video: Path) -> None:
     label = "two\nlines \x1b[2J\u202e"
     one = call("submit", str(video), "--label", label)[1].strip()

@@ -20,7 +20,7 @@ from core.annotations.convention import Fitted, fit_convention
 from core.annotations.reading import quantum
 from core.annotations.summary import advice
 from core.errors import BadInput
-from core.settings.groups import InputSettings
+from core.settings.reading import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameRow, FrameTable, VideoInfo
 from tests.core.making_videos import make_video

@@ -9,6 +9,9 @@ from core.checks.lens import check_left, check_lens, check_shift
 from core.checks.model import check_coverage, check_points, check_reprojection
 from core.flags import Flag
 from core.geometry.fisheye import fisheye_radius, viewing_angle
+from core.geometry.lens import LensModel, make_lens
+
+FISHEYE = LensModel.OPENCV_FISHEYE
 
 
 def codes(flags: Sequence[Flag]) -> list[str]:
@@ -31,19 +34,29 @@ def test_limits_of_what_a_model_holds() -> None:
 
 
 def test_the_lens_of_a_borescope_is_plausible() -> None:
-    assert check_lens(787, 525, np.array([520, 520, 442, 281, 0.04, 0.005, 0, 0.0])) == []
+    assert check_lens(787, 525, make_lens(FISHEYE, [520, 520, 442, 281, 0.04, 0.005, 0, 0])) == []
 
 
 @pytest.mark.parametrize(
     ("focal", "code"), [(4000.0, ["focal_implausible"]), (150.0, ["focal_implausible"]), (520.0, [])]
 )
 def test_field_of_view_outside_of_15_to_200_degrees(focal: float, code: list[str]) -> None:
-    assert codes(check_lens(787, 525, np.array([focal, focal, 393, 262, 0, 0, 0, 0.0]))) == code
+    assert codes(check_lens(787, 525, make_lens(FISHEYE, [focal, focal, 393, 262, 0, 0, 0, 0]))) == code
 
 
 def test_a_polynomial_that_turns_back_inside_the_image_is_flagged() -> None:
-    flags = check_lens(540, 360, np.array([566.0, 558, 270, 180, 0.6, -0.55, -8.8, 5.0]))
+    flags = check_lens(540, 360, make_lens(FISHEYE, [566, 558, 270, 180, 0.6, -0.55, -8.8, 5]))
     assert codes(flags) == ["distortion_implausible"]
+
+
+def test_a_perspective_lens_is_judged_by_its_own_polynomial() -> None:
+    # 500 px see 90 degrees over 1000 px; as a fisheye it would be 115 degrees.
+    assert check_lens(1000, 600, make_lens("PINHOLE", [500, 500, 500, 300])) == []
+    assert codes(check_lens(1000, 600, make_lens("PINHOLE", [4500, 4500, 500, 300]))) == ["focal_implausible"]
+    assert check_lens(1000, 600, make_lens("OPENCV", [500, 500, 500, 300, -0.1, 0.02, 0, 0])) == []
+    # 1 - 0.9 t^2 is 0 at t = 1.05, and the polynomial reaches no farther than 0.70 focal lengths.
+    folded = check_lens(1000, 600, make_lens("SIMPLE_RADIAL", [500, 500, 300, -0.3]))
+    assert codes(folded) == ["distortion_implausible"]
 
 
 def test_a_focal_length_that_moves_with_the_choice_of_tracks_is_flagged() -> None:

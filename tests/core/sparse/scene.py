@@ -35,10 +35,17 @@ class Scene:
     features: list[FrameFeatures]
     point: list[npt.NDArray[np.int64]]
     centers: npt.NDArray[np.float64]
+    lens: CameraFields
 
 
 def make_scene(
-    n_frames: int = 24, n_points: int = 900, *, step: float = 0.12, noise_px: float = 0.3, drift: float = 0.0
+    n_frames: int = 24,
+    n_points: int = 900,
+    *,
+    step: float = 0.12,
+    noise_px: float = 0.3,
+    drift: float = 0.0,
+    lens: CameraFields = LENS,
 ) -> Scene:
     """Frames that see a bumpy wall from about 2 away; with ``step=0`` the camera only turns.
 
@@ -55,7 +62,7 @@ def make_scene(
         center = np.array([step * frame, 0.15 * np.sin(frame / 4) * (step > 0), 0.2 * np.sin(frame / 6) * (step > 0)])
         aside = (center - points) * [1.0, 1.0, 0.0]
         moved = points + (follow * (aside**2).sum(axis=1))[:, None] * aside
-        xy = project((moved - center) @ turn_of(frame).T)
+        xy = project((moved - center) @ turn_of(frame).T, lens)
         visible = np.flatnonzero(((xy > 0) & (xy < [WIDTH, HEIGHT])).all(axis=1))
         visible = rng.permutation(visible)
         keypoints = (xy[visible] + rng.normal(0, noise_px, (len(visible), 2))).astype(np.float32)
@@ -68,11 +75,16 @@ def make_scene(
         )
         seen.append(visible)
         centers.append(center)
-    return Scene(features, seen, np.array(centers))
+    return Scene(features, seen, np.array(centers), lens)
 
 
-def project(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """(n, 3) camera points to (n, 2) pixels of an equidistant lens; NaN behind the camera."""
+def project(points: npt.NDArray[np.float64], lens: CameraFields = LENS) -> npt.NDArray[np.float64]:
+    """(n, 3) camera points to (n, 2) pixels, by default of an equidistant lens; NaN behind the camera."""
+    if lens is not LENS:
+        before = points[:, 2] >= 0.1
+        pixels = np.full((len(points), 2), np.nan)
+        pixels[before] = camera_from_dict(lens).img_from_cam(points[before])
+        return pixels
     radius = np.linalg.norm(points[:, :2], axis=1)
     theta = np.arctan2(radius, points[:, 2])
     xy: npt.NDArray[np.float64] = FOCAL * theta[:, None] * points[:, :2] / radius[:, None] + [WIDTH / 2, HEIGHT / 2]
@@ -82,7 +94,7 @@ def project(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 def view_graph(scene: Scene, window: int = 5) -> PairTable:
     """True matches of neighbouring frames, verified by the real verifier."""
-    verifier = Verifier(camera_from_dict(LENS), make_settings().verification)
+    verifier = Verifier(camera_from_dict(scene.lens), make_settings().verification)
     n = len(scene.features)
     pairs = [(a, b) for a in range(n) for b in range(a + 1, min(a + window, n - 1) + 1)]
     matched = []
@@ -99,7 +111,7 @@ def write_graph(folder: Path, scene: Scene, table: PairTable) -> Path:
     folder.mkdir(parents=True)
     write_table(folder / "graph.npz", table)
     keypoints = [features.keypoints for features in scene.features]
-    write_database(folder / "database.db", camera_from_dict(LENS), keypoints, table)
+    write_database(folder / "database.db", camera_from_dict(scene.lens), keypoints, table)
     return folder
 
 

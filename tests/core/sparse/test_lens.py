@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from core.errors import BadInput
+from core.geometry.lens import lens_of, make_lens
 from core.settings import make_settings
 from core.settings.groups import CameraSettings
 from core.sparse.lens import (
@@ -55,6 +57,34 @@ def test_a_given_view_counts_before_everything() -> None:
     chosen = choose_lens(FRAMES, CameraSettings(fov_deg=106.0), [start(40.0, 900.0)])
     assert chosen["focal_from"] == "given"
     assert chosen["params"] == pytest.approx([focal_from_fov(106.0, 960)] * 2 + [442.0, 281.0, 0, 0, 0, 0])
+
+
+CALIBRATION = {"model": "PINHOLE", "params": (500.0, 500.0, 470.0, 350.0), "size_px": (960, 720)}
+
+
+def test_a_calibration_is_moved_to_the_crop_and_scaled_to_the_video() -> None:
+    settings = CameraSettings(**CALIBRATION, principal_point="crop")
+    chosen = choose_lens(FRAMES, settings, [])
+    assert (chosen["model"], chosen["focal_from"], chosen["flags"]) == ("PINHOLE", "calibration", [])
+    assert chosen["params"] == [500.0, 500.0, 470.0 - 38, 350.0 - 79]
+    twice = choose_lens({**FRAMES, "source_width": 1920, "source_height": 1440}, settings, [])
+    assert twice["params"] == [1000.0, 1000.0, 940.0 - 38, 700.0 - 79]
+
+
+def test_a_calibration_of_another_shape_is_refused_with_both_sizes() -> None:
+    with pytest.raises(BadInput, match="960x720 and the video has 960x719"):
+        choose_lens({**FRAMES, "source_height": 719}, CameraSettings(**CALIBRATION), [])
+
+
+@pytest.mark.parametrize("model", ["OPENCV", "PINHOLE", "SIMPLE_RADIAL"])
+def test_a_perspective_lens_starts_as_a_pinhole_of_the_same_view(model: str) -> None:
+    settings = CameraSettings(model=model, fov_deg=90.0)
+    chosen = choose_lens(FRAMES, settings, [])
+    lens = make_lens(model, chosen["params"])
+    assert (lens.fx, lens.cx, lens.cy) == (pytest.approx(480.0), 442.0, 281.0)
+    assert fov_from_focal(480.0, 960, model) == pytest.approx(90.0)
+    start = lens_of(start_lens(FRAMES, settings, 90.0))
+    assert (start.fx, start.fisheye) == (pytest.approx(480.0), False)
 
 
 def test_colmaps_default() -> None:

@@ -36,7 +36,7 @@ def graph(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def mapped(graph: Path) -> pycolmap.Reconstruction:
     """24 images of an equidistant lens; its camera has two radial terms, both 0."""
     model = model_of(Case(graph, 0, 24, SETTINGS, 0))
-    set_lens(model, 2)
+    set_lens(model, "RADIAL_FISHEYE")
     model.camera(1).params = list(np.array([FOCAL, WIDTH / 2, HEIGHT / 2, 0.0, 0.0]))
     return model
 

@@ -11,7 +11,14 @@ from tests.core.sparse.scene import make_scene, true_model
 
 F64 = NDArray[np.float64]
 
-DISTORTION = {1: [0.05], 2: [0.05, -0.02], 4: [0.05, -0.02, 0.01, -0.003]}
+DISTORTION = {
+    "SIMPLE_RADIAL_FISHEYE": [0.05],
+    "RADIAL_FISHEYE": [0.05, -0.02],
+    "OPENCV_FISHEYE": [0.05, -0.02, 0.01, -0.003],
+    "PINHOLE": [],
+    "RADIAL": [0.05, -0.02],
+    "OPENCV": [0.05, -0.02, 0.01, -0.003],
+}
 OFF = 0.02
 
 
@@ -21,7 +28,7 @@ def mapped() -> pycolmap.Reconstruction:
     return true_model(make_scene(12))
 
 
-@pytest.fixture(params=[1, 2, 4])
+@pytest.fixture(params=DISTORTION)
 def disturbed(request: pytest.FixtureRequest, mapped: pycolmap.Reconstruction) -> pycolmap.Reconstruction:
     """The model with another lens, whose points are not where their rays meet."""
     model = pycolmap.Reconstruction(mapped)
@@ -30,6 +37,15 @@ def disturbed(request: pytest.FixtureRequest, mapped: pycolmap.Reconstruction) -
     params[model.camera(1).extra_params_idxs()] = DISTORTION[request.param]
     model.camera(1).params = list(params)
     rng = np.random.default_rng(0)
+    if not request.param.endswith("FISHEYE"):
+        # What a fisheye saw no perspective lens explains: its keypoints are made anew.
+        for image_id in model.reg_image_ids():
+            image = model.image(image_id)
+            for point in image.points2D:
+                if point.has_point3D():
+                    seen = image.project_point(model.point3D(point.point3D_id).xyz)
+                    assert seen is not None
+                    point.xy = seen + rng.normal(0, 0.3, 2)
     for point in model.points3D.values():
         point.xyz = point.xyz + OFF * rng.normal(size=3)
     return model

@@ -125,13 +125,13 @@ def test_a_principal_point_that_is_off_is_found_through_the_kept_tracks(tmp_path
 def test_the_lens_has_as_many_terms_as_it_is_given(case: Adjusted) -> None:
     model = pycolmap.Reconstruction(case[2])
     model.camera(1).params = list(np.array([300.0, 310.0, 320.0, 240.0, 0.1, 0.02, 0.003, 0.0004]))
-    set_lens(model, 2)
+    set_lens(model, "RADIAL_FISHEYE")
     assert (model.camera(1).model.name, list(model.camera(1).params)) == (
         "RADIAL_FISHEYE",
         [305.0, 320.0, 240.0, 0.1, 0.02],
     )
-    set_lens(model, 1)
+    set_lens(model, "SIMPLE_RADIAL_FISHEYE")
     assert model.camera(1).model.name == "SIMPLE_RADIAL_FISHEYE"
-    set_lens(model, 4)
+    set_lens(model, "OPENCV_FISHEYE")
     assert list(model.camera(1).params) == [305.0, 305.0, 320.0, 240.0, 0.1, 0.0, 0.0, 0.0]
     assert model.camera(1).model.name == "OPENCV_FISHEYE"

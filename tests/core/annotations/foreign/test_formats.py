@@ -16,7 +16,7 @@ from core.annotations.load import load_annotations
 from core.annotations.placed import place
 from core.errors import BadInput
 from core.scene.frame import SourceFrame
-from core.settings.groups import InputSettings
+from core.settings.reading import InputSettings
 from core.video.probe import probe_video
 from core.video.table import FrameTable
 from tests.core.making_annotations import FRAME, read, zipped

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from core.annotations.foreign.archive import MAX_RATIO, packed_folder
-from core.annotations.foreign.xml_tree import MAX_DEPTH, parse_xml
 from core.annotations.load import annotations_from, load_annotations
 from core.errors import BadInput
 from core.intake import answer, check_input
 from core.scene.detection import DETECTION_COLUMNS
 from core.settings import make_settings
 from core.videos import Recording
+from core.xml_tree import MAX_DEPTH, parse_xml
 from tests.core.making_annotations import zipped
 from tests.inputs import INPUTS
 
@@ -103,7 +103,7 @@ def test_xml_declares_nothing(text: str) -> None:
 def test_xml_has_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(BadInput, match="nests them deeper"):
         parse_xml(b"<a>" * (MAX_DEPTH + 1))
-    monkeypatch.setattr("core.annotations.foreign.xml_tree.MAX_ELEMENTS", 3)
+    monkeypatch.setattr("core.xml_tree.MAX_ELEMENTS", 3)
     assert len(parse_xml(b"<a><b/><b/></a>")) == 2
     with pytest.raises(BadInput, match="more than 3 elements"):
         parse_xml(b"<a><b/><b/><b/></a>")

@@ -13,12 +13,16 @@ MAX_ELEMENTS = 2_000_000
 MAX_DEPTH = 64
 
 
-def parse_xml(data: bytes) -> Element:
+def parse_xml(data: bytes, what: str = "annotations") -> Element:
     """The root of an XML document.
 
+    Args:
+        data: its bytes.
+        what: it holds; messages say so and codes begin with it.
+
     Raises:
-        BadInput: `annotations_malformed` (with line and column), `annotations_xml_declares` (a document type, the
-            only place where entities can be declared) or `annotations_too_large`.
+        BadInput: `WHAT_malformed` (with line and column), `WHAT_xml_declares` (a document type, the only place where
+            entities can be declared), `WHAT_not_utf8` or `WHAT_too_large`.
     """
     builder = TreeBuilder()
     count = depth = 0
@@ -27,7 +31,9 @@ def parse_xml(data: bytes) -> Element:
         nonlocal count, depth
         count, depth = count + 1, depth + 1
         if count > MAX_ELEMENTS or depth > MAX_DEPTH:
-            raise _refused(f"has more than {MAX_ELEMENTS} elements, or nests them deeper than {MAX_DEPTH}", "too_large")
+            raise _refused(
+                what, f"has more than {MAX_ELEMENTS} elements, or nests them deeper than {MAX_DEPTH}", "too_large"
+            )
         builder.start(tag, attributes)
 
     def end(tag: str) -> None:
@@ -36,7 +42,7 @@ def parse_xml(data: bytes) -> Element:
         builder.end(tag)
 
     def declared(*_: Any) -> NoReturn:
-        raise _refused("declares a document type; that is not read", "xml_declares")
+        raise _refused(what, "declares a document type; that is not read", "xml_declares")
 
     parser = expat.ParserCreate()
     parser.buffer_text = True
@@ -48,14 +54,14 @@ def parse_xml(data: bytes) -> Element:
     except expat.ExpatError as error:
         place = f"line {error.lineno}, column {error.offset + 1}"
         raise BadInput(
-            f"the annotations are not valid XML: {expat.ErrorString(error.code)} at {place}",
-            code="annotations_malformed",
+            f"not valid XML in the {what}: {expat.ErrorString(error.code)} at {place}",
+            code=f"{what}_malformed",
             where=place,
         ) from None
     except (LookupError, ValueError):  # an encoding that Python does not know
-        raise _refused("is in an encoding that is not read; UTF-8 is", "not_utf8") from None
+        raise _refused(what, "is in an encoding that is not read; UTF-8 is", "not_utf8") from None
     return builder.close()
 
 
-def _refused(what: str, code: str) -> BadInput:
-    return BadInput(f"the XML of the annotations {what}", code=f"annotations_{code}", where="annotations")
+def _refused(what: str, why: str, code: str) -> BadInput:
+    return BadInput(f"the XML of the {what} {why}", code=f"{what}_{code}", where=what)

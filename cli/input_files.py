@@ -1,4 +1,4 @@
-"""The annotations that a command names: a file, or a folder of files as many tools write it."""
+"""The files beside the video that a command names: annotations, also as a folder of files, and a calibration."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from core.annotations.foreign.archive import packed_folder
+from core.calibration.files import read_calibration
 
 OPTION = "input.annotation_format"
 
@@ -28,6 +29,17 @@ def annotation_file(path: Path) -> Iterator[Path]:
 def with_format(parsed: argparse.Namespace) -> list[str]:
     """The options ``NAME=VALUE`` of a command, with what `--format` says as one of them."""
     return [*parsed.assignments, *([] if parsed.format is None else [f"{OPTION}={parsed.format}"])]
+
+
+def calibration_options(path: Path | None) -> dict[str, object]:
+    """The options that a calibration file stands for; none without one."""
+    return {} if path is None else read_calibration(path).options()
+
+
+def add_calibration(command: argparse.ArgumentParser) -> None:
+    """Let a command take `--calibration`."""
+    text = "lens of the source frame: a file of OpenCV, Kalibr or COLMAP; it is then held (docs/calibration.md)"
+    command.add_argument("--calibration", type=Path, metavar="FILE", help=text)
 
 
 def add_format(command: argparse.ArgumentParser) -> None:

@@ -109,6 +109,7 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         else:
             focal, k1, origin = float(chosen["focal_px"]), float(chosen["k1"]), "estimated"
     agreement = _agreement(starts, focal) if chosen is not None else None
+    is_told = origin in ("given", "calibration")
     lens = told or Lens(focal, focal, *principal_point(frames, settings), (k1, 0.0, 0.0, 0.0))
     return {
         "model": model,

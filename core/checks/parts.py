@@ -65,7 +65,9 @@ def prune(table: PairTable, model: pycolmap.Reconstruction, position: F64, n_sea
     doubted = table.verified & (table.config == UNCALIBRATED)
     doubted |= contradicted(select(table, ~doubted))
     # Where most pairs are doubted the others have only not been asked: they are in too few triplets.
-    cuts = cut_apart(table.pairs[table.verified], doubted[table.verified].astype(np.float64), 0.0, n_search)
+    cuts = cut_apart(
+        table.pairs[table.verified].astype(np.int64), doubted[table.verified].astype(np.float64), 0.0, n_search
+    )
     # A model that was made of such pairs is bent over all its length, and would be cut at places that are right.
     cuts = cuts or find_cuts(select(table, ~doubted), model, n_search)
     rest = select(table, ~(doubted | spans_any(table, position, cuts)))

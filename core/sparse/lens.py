@@ -121,9 +121,7 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
         "agreement": agreement,
         "starts": [dict(start) for start in starts],
-        "flags": []
-        if settings.focal != "estimate" or origin in ("given", "calibration")
-        else _doubts(agreement, reason),
+        "flags": [] if settings.focal != "estimate" or is_told else _doubts(agreement, reason),
     }
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,8 @@ from core.checks.lens import check_left, check_shift
 from core.checks.model import check_model, is_wrong
 from core.checks.stats import model_stats
 from core.errors import StageFailed
-from core.geometry.lens import lens_of
+from core.flags import Flag
+from core.geometry.lens import Lens, lens_of
 from core.io.frames import images_folder, write_registered
 from core.io.sparse import read_model, write_model
 from core.sparse.adjust import Adjustment, Align, adjust
@@ -66,9 +66,15 @@ def run(task: StageTask) -> StageResult:
             is_wrong=vetoed,
         )
     model, loose = drop_loose_ends(model, n_search) if settings.drop_loose else (model, [])
-    adjustment = None
+    adjustment, said_px = None, spans_said(task.facts["camera"])
+    left: Flag | None = None
     if settings.final_adjustment:
-        adjustment = _adjust(task, model)
+        adjustment = _adjust(task, model, hold_lens=not task.settings.mapper.refine_lens)
+        left = check_left(_lens(adjustment.model).focal_px, said_px)
+        if left is not None and check_left(_lens(model).focal_px, said_px) is None:
+            # The clip does not determine the lens: focal length and distortion trade, and the tracks that agree best
+            # agree on a wrong pair of them. The lens of the search has more to speak for it; the flag stays.
+            adjustment = _adjust(task, model, hold_lens=True)
         model = adjustment.model
     if settings.drop_loose:
         # Counted here, after the filters: until then mismatches hold what nothing holds.
@@ -78,11 +84,15 @@ def run(task: StageTask) -> StageResult:
     write_registered(task.out, [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())])
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.piece else n_frames
-    facts = _facts(model, adjustment, table, offered, n_search, spans_said(task.facts["camera"]))
+    facts = _facts(model, adjustment, table, offered, n_search, left or check_left(_lens(model).focal_px, said_px))
     return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": loose})
 
 
-def _adjust(task: StageTask, model: pycolmap.Reconstruction) -> Adjustment:
+def _lens(model: pycolmap.Reconstruction) -> Lens:
+    return lens_of(next(iter(model.cameras.values())))
+
+
+def _adjust(task: StageTask, model: pycolmap.Reconstruction, *, hold_lens: bool) -> Adjustment:
     names = {model.image(image_id).name for image_id in model.reg_image_ids()}
     return adjust(
         model,
@@ -92,7 +102,7 @@ def _adjust(task: StageTask, model: pycolmap.Reconstruction) -> Adjustment:
         align=_aligner(task) if task.settings.model.align_keypoints else None,
         trim_tracks=task.settings.model.trim_tracks,
         judge_radial=task.settings.model.radial_terms == "auto",
-        hold_lens=not task.settings.mapper.refine_lens,
+        hold_lens=hold_lens,
         loss_scale_px=task.settings.model.loss_scale_px,
         threads=task.settings.compute.threads or 1,  # 0 asks for a result that repeats to the last bit
         progress=lambda share, message: task.report(0.5 + 0.5 * share, 1, message),
@@ -118,15 +128,14 @@ def _facts(
     table: PairTable,
     n_frames: int,
     n_search: int,
-    said_px: Sequence[float],
+    left: Flag | None,
 ) -> Facts:
     stats = model_stats(model)
     flags = check_model(model, stats, table, n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:
         flags += filter(None, [check_shift(adjustment.trimming.shift)])
-    camera = next(iter(model.cameras.values()))
-    lens = lens_of(camera)
-    flags += filter(None, [check_left(lens.focal_px, said_px)])
+    flags += filter(None, [left])
+    camera, lens = next(iter(model.cameras.values())), _lens(model)
     return {
         "registered_images": stats.registered_images,
         "points3D": stats.points3D,

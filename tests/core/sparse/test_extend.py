@@ -149,3 +149,17 @@ def test_a_winner_from_scratch_has_nothing_to_confirm(
     assert (confirmed["kept"], confirmed["start_mode"]) == ("searched", "scratch")
     same = [pycolmap.Reconstruction(tmp_path / name / "model") for name in ("reduce_refine", "confirm")]
     assert model_stats(same[0]) == model_stats(same[1])
+
+
+def test_a_lens_that_only_the_last_adjustment_leaves_is_held_and_flagged(
+    graph: Path, winner: pycolmap.Reconstruction, tmp_path: Path
+) -> None:
+    searched = pycolmap.Reconstruction(winner)
+    camera = searched.cameras[1]
+    camera.params = [1.3 * FOCAL, 1.3 * FOCAL, *camera.params[2:]]
+    alone = {"model.confirm": False, "model.register_rest": False, "model.drop_loose": False}
+    _, extended = run_stages(graph, searched, tmp_path, "scratch", alone, said_px=1.3 * FOCAL)
+    assert extended["focal_px"] == pytest.approx(1.3 * FOCAL)
+    left = [flag for flag in extended["checks"] if flag["where"] == "focal length against what spans of the clip said"]
+    assert [flag["code"] for flag in left] == ["lens_unsettled"]
+    assert left[0]["value"] > 0.15

@@ -114,12 +114,13 @@ def test_a_detector_is_judged_by_what_it_found_at_least_twice() -> None:
 
 
 def test_stated_confidences_have_four_decimals() -> None:
-    detections = [detection(k, A, k) for k in range(7)]
+    detections = [detection(0, A, 2), detection(1, A, 6)]
     observations = place_on_surface(detections, scene(detections=detections), times(), plates.no_matches, 0.4)
     found = find_defects(observations, scene(detections=detections), TIMES_S)
     events = event_rows(found, TIMES_S)
     (record,) = defect_records(found, events, [[]], 0)
     stated = [one.row.confidence for one in found.observations]
+    assert all(0.01 < (value or 0.0) < 0.99 for value in stated), "none is cut to the bounds"
     assert record.confidence is not None
     numbers = [
         *stated,
@@ -129,3 +130,14 @@ def test_stated_confidences_have_four_decimals() -> None:
     ]
     assert [number for number in numbers if number is not None] == [round(n, 4) for n in numbers if n is not None]
     assert found.defects[0].exists != round(found.defects[0].exists, 4), "it is rounded when it is stated"
+
+
+def test_a_detection_without_a_place_belongs_to_no_defect() -> None:
+    detections = [detection(0, A, 2), detection(1, A, 6), detection(2, A, 4, source_index=None)]
+    observations = place_on_surface(detections, scene(detections=detections), times(), plates.no_matches, 0.4)
+    found = find_defects(observations, scene(detections=detections), TIMES_S)
+    assert [(one.row.outcome, one.row.defect_id) for one in found.observations] == [
+        ("mapped", 0),
+        ("mapped", 0),
+        ("unplaced", None),
+    ]

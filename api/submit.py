@@ -281,7 +281,7 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
             raise invalid([FieldError(pointer="/video", detail="the part 'video' is missing")])
         parameters = parse_parameters(parts["parameters"].path.read_bytes()) if "parameters" in parts else Parameters()
         if "calibration" in parts:
-            parameters = _calibrated(parameters, parts["calibration"].path)
+            parameters = await on_disk(partial(_calibrated, parameters, parts["calibration"].path))
         annotations = _file(parts["annotations"]) if "annotations" in parts else None
         yield Asked(owner, _file(parts["video"]), annotations, parameters, key)
     finally:

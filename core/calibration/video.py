@@ -157,7 +157,7 @@ def _outline(points: F64, corners: Corners, size_px: tuple[int, int]) -> F64 | N
     None for corners that lie on a line.
     """
     H, _ = cv2.findHomography(points[corners.ids][:, :2], corners.xy)
-    if H is None:
+    if np.shape(H) != (3, 3):  # OpenCV's types leave out that it is None then
         return None
     (x0, y0), (x1, y1) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     ends = np.array([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]])

@@ -14,6 +14,7 @@ from core.calibration.solve import MIN_VIEWS, solve
 from core.calibration.video import VideoCalibration, View, calibrate_video, choose_views
 from core.errors import BadInput
 from core.geometry.lens import LensModel
+from tests.core.making_films import ffmpeg
 
 SIZE = (400, 300)
 BOARD = parse_board("charuco:7x5:10:7:DICT_4X4_50")
@@ -61,6 +62,16 @@ def test_a_written_calibration_is_read_by_us_and_by_opencv(found: VideoCalibrati
     assert storage.getNode("camera_matrix").mat()[0, 2] == pytest.approx(calibration.params[2] - 0.5)
     assert storage.getNode("distortion_coefficients").mat().ravel() == pytest.approx(calibration.params[4:])
     assert storage.getNode("board").string() == "charuco:7x5:10:7:DICT_4X4_50"
+
+
+@pytest.mark.tool("ffmpeg")
+def test_a_film_of_a_board_gives_what_its_pictures_give(
+    found: VideoCalibration, pictures: Path, tmp_path: Path
+) -> None:
+    words = ("-framerate", "5", "-i", pictures / "%04d.png", "-c:v", "ffv1")
+    again = calibrate_video(ffmpeg(tmp_path / "board.mkv", *words), BOARD, LensModel.OPENCV_FISHEYE)
+    assert again.looked_at == VIEWS
+    assert again.solution.calibration.params[:4] == pytest.approx(found.solution.calibration.params[:4], abs=0.5)
 
 
 def test_a_perspective_lens_is_found_again(tmp_path: Path) -> None:

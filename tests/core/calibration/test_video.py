@@ -99,7 +99,7 @@ def test_another_board_than_the_one_named_is_said(few: Path, board: str, words: 
 
 
 def test_a_chessboard_of_another_size_is_named(tmp_path: Path) -> None:
-    write_pictures(tmp_path, CHESSBOARD, true_camera(LensModel.OPENCV, SIZE), 2)
+    write_pictures(tmp_path, CHESSBOARD, true_camera(LensModel.OPENCV, SIZE), 4)
     with pytest.raises(BadInput, match="a chessboard of 6x5 inner corners is seen"):
         calibrate_video(tmp_path, parse_board("chessboard:7x5:10"), LensModel.OPENCV)
 

@@ -55,7 +55,7 @@ def test_a_calibration_counts_before_the_file_of_parameters_and_after_what_is_se
     settings = parameters.from_arguments(parse(*given)).settings()
     assert settings.camera.model == LensModel.OPENCV
     assert settings.camera.size_px == (480, 360)
-    assert settings.camera.params == (260, 260, 240, 180, -0.1, 0, 0, 0)
+    assert settings.camera.params == pytest.approx((260, 260, 240, 180, -0.1, 0, 0, 0))
     assert (settings.matching.window, settings.mapper.refine_lens) == (7, True)
 
 

@@ -145,7 +145,7 @@ async def asked_by_form(request: Request, services: Services, owner: str, key: s
         parameters = parse_parameters(given[0].path.read_bytes()) if given else Parameters()
         calibration = form.named("calibration")
         if calibration:
-            parameters = _calibrated(parameters, calibration[0].path)
+            parameters = await on_disk(partial(_calibrated, parameters, calibration[0].path))
         yield Asked(owner, _sent(form.named("video"), form.named("annotations")), parameters, key)
     finally:
         form.discard()

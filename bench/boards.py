@@ -45,7 +45,7 @@ def flat_picture(board: Board) -> tuple[U8, F64]:
     else:
         squares = np.indices((board.rows + 1, board.columns + 1)).sum(axis=0) % 2
         inside = np.kron(255 * squares, np.ones((_TEXTURE_PX, _TEXTURE_PX))).astype(np.uint8)
-    picture = cv2.copyMakeBorder(inside, *[_TEXTURE_PX] * 4, cv2.BORDER_CONSTANT, value=(255.0,))
+    picture = np.pad(inside, _TEXTURE_PX, constant_values=255)
     scale = _TEXTURE_PX / board.square
     return np.asarray(picture, np.uint8), np.array([[scale, 0, _TEXTURE_PX - 0.5], [0, scale, _TEXTURE_PX - 0.5]])
 
@@ -66,7 +66,7 @@ def poses(board: Board, camera: pycolmap.Camera, count: int, seed: int) -> list[
         distance = extent * camera.mean_focal_length() / (camera.width * rng.uniform(0.42, 0.55))
         # Views straight on say nothing of the focal length.
         tilt = rng.uniform(20, 40, 2) * rng.choice([-1.0, 1.0], 2)
-        turn = cv2.Rodrigues(np.radians([*tilt, rng.uniform(-35, 35)]))[0]
+        turn = np.asarray(cv2.Rodrigues(np.radians([*tilt, rng.uniform(-35, 35)]))[0], np.float64)
         found.append((turn, distance * ray / np.linalg.norm(ray) - turn @ middle))
     return found
 
@@ -135,7 +135,7 @@ def difference_px(found: Calibration, truth: pycolmap.Camera, folder: Path, boar
     back = np.column_stack([np.asarray(lens.cam_from_img(pixels)), np.ones(len(pixels))])
     unit = [one / np.linalg.norm(one, axis=1, keepdims=True) for one in (back, rays)]
     turn = Rotation.align_vectors(unit[0], unit[1])[0]
-    return np.linalg.norm(np.asarray(lens.img_from_cam(turn.apply(rays))) - pixels, axis=1)
+    return np.asarray(np.linalg.norm(np.asarray(lens.img_from_cam(turn.apply(rays))) - pixels, axis=1))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -18,8 +18,8 @@ from core.calibration.model import CODE
 from core.errors import BadInput
 from core.xml_tree import parse_xml
 
-MAX_BYTES = 1 << 20
-"""Largest file; one of a camera has some hundred bytes."""
+MAX_BYTES = 1 << 16
+"""Largest file; one of a camera has some hundred bytes, and YAML is read at some ten thousand a second."""
 
 Document: TypeAlias = Mapping[str, object]
 

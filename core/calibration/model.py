@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,7 +97,7 @@ def refitted(lens: Lens, k3: float, size_px: tuple[int, int], where: str) -> Len
             [lens.fx, lens.fy, lens.cx, lens.cy, *([0.0] * 4 if fisheye else [*lens.radial[:2], *lens.tangential])]
         )
         scale = [lens.fx, lens.fy, lens.fx, lens.fy, 1.0, 1.0, 1.0, 1.0]
-        found = least_squares(lambda x, project=project: (project(tangents, x) - seen).ravel(), start, x_scale=scale)
+        found = least_squares(_apart, start, x_scale=scale, args=(project, tangents, seen))
         apart = float(np.linalg.norm(project(tangents, found.x) - seen, axis=1).max())
         fx, fy, cx, cy, *terms = (float(value) for value in found.x)
         radial, tangential = (terms, [0.0, 0.0]) if fisheye else ([*terms[:2], 0.0, 0.0], terms[2:])
@@ -111,6 +112,11 @@ def refitted(lens: Lens, k3: float, size_px: tuple[int, int], where: str) -> Len
             where=where,
         )
     return closest
+
+
+def _apart(values: F64, project: Callable[[F64, F64], F64], tangents: F64, seen: F64) -> F64:
+    """(2n,) differences between where a lens shows points and where they are seen, px."""
+    return np.asarray((project(tangents, values) - seen).ravel())
 
 
 def _perspective(tangents: F64, values: F64, k3: float = 0.0) -> F64:

@@ -133,7 +133,7 @@ def _fit_fisheye(points: Sequence[F64], seen: Sequence[F64], size_px: tuple[int,
         for board, turn, shift, xy in zip(boards, turns, shifts, seen, strict=True)
     ]
     k1, k2, k3, k4 = (float(value) for value in D)
-    return _lens(K, radial=(k1, k2, k3, k4)), errors
+    return _lens(np.asarray(K, np.float64), radial=(k1, k2, k3, k4)), errors
 
 
 def _fit_perspective(
@@ -151,7 +151,7 @@ def _fit_perspective(
         for board, turn, shift, xy in zip(points, turns, shifts, seen, strict=True)
     ]
     k1, k2, p1, p2 = (float(value) for value in np.ravel(D)[:4])
-    return _lens(K, radial=(k1, k2, 0.0, 0.0), tangential=(p1, p2), fisheye=False), errors
+    return _lens(np.asarray(K, np.float64), radial=(k1, k2, 0.0, 0.0), tangential=(p1, p2), fisheye=False), errors
 
 
 def _lens(

@@ -15,6 +15,7 @@ from core.calibration.solve import MIN_VIEWS, Solution, solve, too_few
 from core.errors import BadInput
 from core.geometry.lens import LensModel
 from core.video.opening import reopen_video
+from core.video.pictures import find_pictures
 from core.video.probe import probe_video
 from core.video.shown import shown_frames
 
@@ -118,7 +119,7 @@ def choose_views(views: Sequence[View], most: int) -> list[View]:
 
 def _find(video: Path, board: Board, progress: Progress) -> tuple[tuple[int, int], int, list[View], list[U8]]:
     """Size of the frames as shown, how many were looked at, those with the board, and a few pictures without it."""
-    info = probe_video(video, allow_truncated=True, fps=_PICTURE_RATE).info
+    info = probe_video(video, allow_truncated=True, fps=_rate(video)).info
     wanted = np.unique(np.linspace(0, info.n_frames - 1, LOOKED_AT).round().astype(np.int64))
     few = set(wanted[:: max(1, len(wanted) // SHOWN_PICTURES)].tolist())
     finder, points = CornerFinder(board), board.points()
@@ -143,6 +144,15 @@ def _find(video: Path, board: Board, progress: Progress) -> tuple[tuple[int, int
     return size_px, done, views, others
 
 
+def _rate(video: Path) -> float | None:
+    """Frames per second of pictures; None for a file, which has times or a rate."""
+    pictures = find_pictures(video)
+    if pictures is None:
+        return None
+    pictures.close()
+    return _PICTURE_RATE
+
+
 def _sharpness(gray: U8, corners: Corners) -> float:
     """Spread of the Laplacian over that of the picture, within the box of the corners: independent of the light."""
     low = np.maximum(np.floor(corners.xy.min(axis=0)), 0).astype(np.int64)
@@ -157,7 +167,7 @@ def _outline(points: F64, corners: Corners, size_px: tuple[int, int]) -> F64 | N
     None for corners that lie on a line.
     """
     H, _ = cv2.findHomography(points[corners.ids][:, :2], corners.xy)
-    if H is None:
+    if np.shape(H) != (3, 3):  # OpenCV's types leave out that it is None then
         return None
     (x0, y0), (x1, y1) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     ends = np.array([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]])

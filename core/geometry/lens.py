@@ -8,19 +8,16 @@ this module, or COLMAP's camera itself.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import BadInput
 from core.geometry.fisheye import viewing_angle
-
-if TYPE_CHECKING:
-    import pycolmap
 
 F64 = NDArray[np.float64]
 
@@ -189,6 +186,18 @@ def scale_to(size_px: tuple[int, int], width: int, height: int) -> float:
     return width / size_px[0]
 
 
-def lens_of(camera: pycolmap.Camera) -> Lens:
-    """The lens of a `pycolmap.Camera` of a model of `PARAMETERS`."""
+class ColmapCamera(Protocol):
+    """What is read of a `pycolmap.Camera`: the settings import this module, and the API loads no vision library."""
+
+    @property
+    def model_name(self) -> str:
+        """One of `PARAMETERS`."""
+
+    @property
+    def params(self) -> Iterable[float]:
+        """In COLMAP's order."""
+
+
+def lens_of(camera: ColmapCamera) -> Lens:
+    """The lens of a camera of COLMAP."""
     return make_lens(camera.model_name, [float(value) for value in camera.params])

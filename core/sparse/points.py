@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from core.geometry.fisheye import fisheye_radius_and_slope
 from core.geometry.lens import lens_of
 from core.jit import compiled
 
@@ -158,6 +157,19 @@ def _project_perspective(x: float, y: float, z: float, R: F64, lens: F64, jacobi
         jacobian[0, j] = lens[0] * (aa * da + ab * db)
         jacobian[1, j] = lens[1] * (ab * da + bb * db)
     return lens[2] + lens[0] * bent_a, lens[3] + lens[1] * bent_b
+
+
+@compiled
+def fisheye_radius_and_slope(theta: float, k1: float, k2: float, k3: float, k4: float) -> tuple[float, float]:
+    """`core.geometry.fisheye.fisheye_radius` of one angle in a compiled loop, and its derivative by the angle.
+
+    It is written in Horner's form, which rounds differently in the last bits than the powers there; both forms stay,
+    because the results of either would change otherwise.
+    """
+    t2 = theta * theta
+    radius = theta * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))
+    slope = 1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))
+    return radius, slope
 
 
 @compiled

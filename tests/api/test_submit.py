@@ -14,6 +14,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import select
 
 from api.app import create_app
+from core.calibration.documents import MAX_BYTES
 from store.models import Inspection
 from tests.api.conftest import ANNOTATIONS, TUS, VIDEO, Backend, client_of
 from tests.api.test_uploads import begin, patch
@@ -209,7 +210,7 @@ def test_a_calibration_tells_the_lens_and_named_options_count_before_it(backend:
     [
         (b"1 FULL_OPENCV 480 360 1 2 3 4 5 6 7 8 9 10 11 12\n", 422, "'FULL_OPENCV' is not read"),
         (b"1 PINHOLE 480 480 260 260 240 240\n", 422, "480x480 and the video has 960x720"),
-        (b"#" * ((1 << 20) + 1), 413, "1048576"),
+        (b"#" * (MAX_BYTES + 1), 413, str(MAX_BYTES)),
     ],
 )
 def test_a_calibration_that_tells_no_lens_of_the_video_is_refused(

@@ -11,6 +11,7 @@ import pytest
 
 from cli import arguments, parameters
 from core.errors import BadInput
+from core.geometry.lens import LensModel
 from core.settings import PRESET_NAMES, make_settings, option_names
 from core.settings.describe import describe_options
 from tests.inputs import INPUTS
@@ -52,8 +53,9 @@ def test_a_calibration_counts_before_the_file_of_parameters_and_after_what_is_se
     file.write_text(json.dumps({"options": {"camera.model": "SIMPLE_RADIAL", "matching.window": 7}}))
     given = ("--parameters", str(file), "--calibration", str(lens), "--set", "mapper.refine_lens=true")
     settings = parameters.from_arguments(parse(*given)).settings()
-    assert (settings.camera.model, settings.camera.size_px) == ("OPENCV", (480, 360))
-    assert settings.camera.params == (260, 260, 240, 180, -0.1, 0, 0, 0)
+    assert settings.camera.model == LensModel.OPENCV
+    assert settings.camera.size_px == (480, 360)
+    assert settings.camera.params == pytest.approx((260, 260, 240, 180, -0.1, 0, 0, 0))
     assert (settings.matching.window, settings.mapper.refine_lens) == (7, True)
 
 

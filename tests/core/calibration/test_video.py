@@ -14,6 +14,7 @@ from core.calibration.solve import MIN_VIEWS, solve
 from core.calibration.video import VideoCalibration, View, calibrate_video, choose_views
 from core.errors import BadInput
 from core.geometry.lens import LensModel
+from tests.core.making_films import ffmpeg
 
 SIZE = (400, 300)
 BOARD = parse_board("charuco:7x5:10:7:DICT_4X4_50")
@@ -26,6 +27,14 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Views of the ChArUco board through the fisheye."""
     folder = tmp_path_factory.mktemp("board")
     write_pictures(folder, BOARD, true_camera(LensModel.OPENCV_FISHEYE, SIZE), VIEWS)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Too few views of the same."""
+    folder = tmp_path_factory.mktemp("few")
+    write_pictures(folder, BOARD, true_camera(LensModel.OPENCV_FISHEYE, SIZE), 3)
     return folder
 
 
@@ -55,13 +64,23 @@ def test_a_written_calibration_is_read_by_us_and_by_opencv(found: VideoCalibrati
     assert storage.getNode("board").string() == "charuco:7x5:10:7:DICT_4X4_50"
 
 
+@pytest.mark.tool("ffmpeg")
+def test_a_film_of_a_board_gives_what_its_pictures_give(
+    found: VideoCalibration, pictures: Path, tmp_path: Path
+) -> None:
+    words = ("-framerate", "5", "-i", pictures / "%04d.png", "-c:v", "ffv1")
+    again = calibrate_video(ffmpeg(tmp_path / "board.mkv", *words), BOARD, LensModel.OPENCV_FISHEYE)
+    assert again.looked_at == VIEWS
+    assert again.solution.calibration.params[:4] == pytest.approx(found.solution.calibration.params[:4], abs=0.5)
+
+
 def test_a_perspective_lens_is_found_again(tmp_path: Path) -> None:
     truth = true_camera(LensModel.OPENCV, SIZE)
     write_pictures(tmp_path, BOARD, truth, 20)
     solution = calibrate_video(tmp_path, BOARD, LensModel.OPENCV).solution
     assert solution.rms_px < 0.3
     off = difference_px(solution.calibration, truth, tmp_path, BOARD)
-    # The farthest corner of the hull, where hardly any corner of a board was, is 0.31 px off.
+    # Measured: 0.12 px in the median, 0.25 px at 95 %. At the rim of the hull, where hardly any corner was, it is 0.31.
     assert np.percentile(off, 95) < 0.3
     assert off.max() < 0.5
 
@@ -70,12 +89,12 @@ def test_a_perspective_lens_is_found_again(tmp_path: Path) -> None:
     ("board", "words"),
     [
         ("charuco:7x5:10:7:DICT_6X6_50", "markers of DICT_4X4_... are seen"),
-        ("chessboard:9x6:10", "none of 12 frames"),
+        ("chessboard:9x6:10", "none of 3 frames"),
     ],
 )
-def test_another_board_than_the_one_named_is_said(pictures: Path, board: str, words: str) -> None:
+def test_another_board_than_the_one_named_is_said(few: Path, board: str, words: str) -> None:
     with pytest.raises(BadInput, match=words) as caught:
-        calibrate_video(pictures, parse_board(board), LensModel.OPENCV_FISHEYE)
+        calibrate_video(few, parse_board(board), LensModel.OPENCV_FISHEYE)
     assert caught.value.code == "no_board"
 
 
@@ -85,10 +104,9 @@ def test_a_chessboard_of_another_size_is_named(tmp_path: Path) -> None:
         calibrate_video(tmp_path, parse_board("chessboard:7x5:10"), LensModel.OPENCV)
 
 
-def test_too_few_views_are_refused(tmp_path: Path) -> None:
-    write_pictures(tmp_path, BOARD, true_camera(LensModel.OPENCV_FISHEYE, SIZE), 3)
+def test_too_few_views_are_refused(few: Path) -> None:
     with pytest.raises(BadInput, match="6 are needed") as caught:
-        calibrate_video(tmp_path, BOARD, LensModel.OPENCV_FISHEYE)
+        calibrate_video(few, BOARD, LensModel.OPENCV_FISHEYE)
     assert caught.value.code == "too_few_views"
 
 

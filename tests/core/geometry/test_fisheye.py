@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from core.geometry.fisheye import fisheye_radius, fisheye_radius_and_slope, viewing_angle
+from core.geometry.fisheye import fisheye_radius, viewing_angle
 from core.jit import compiled
+from core.sparse.points import fisheye_radius_and_slope
 
 
 def written_out(theta: Any, lens: Any) -> tuple[float, float]:

@@ -81,10 +81,12 @@ def test_a_perspective_lens_starts_as_a_pinhole_of_the_same_view(model: str) -> 
     settings = CameraSettings(model=model, fov_deg=90.0)
     chosen = choose_lens(FRAMES, settings, [])
     lens = make_lens(model, chosen["params"])
-    assert (lens.fx, lens.cx, lens.cy) == (pytest.approx(480.0), 442.0, 281.0)
+    assert lens.fx == pytest.approx(480.0)
+    assert (lens.cx, lens.cy) == (442.0, 281.0)
     assert fov_from_focal(480.0, 960, model) == pytest.approx(90.0)
     start = lens_of(start_lens(FRAMES, settings, 90.0))
-    assert (start.fx, start.fisheye) == (pytest.approx(480.0), False)
+    assert start.fx == pytest.approx(480.0)
+    assert not start.fisheye
 
 
 def test_colmaps_default() -> None:

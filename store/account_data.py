@@ -18,7 +18,7 @@ from store.audit import AuditFilter, AuditLog
 from store.db import Database
 from store.inspections import mark_deleted
 from store.keys import Keys
-from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Upload
+from store.models import ACTIVE_INSPECTION, Artifact, FurtherVideo, IdempotencyKey, Inspection, Upload
 from store.plan import Plan
 
 _PAGE = 500
@@ -126,7 +126,8 @@ def _inspection(row: Inspection) -> dict[str, Any]:
 
 
 def _inputs(row: Inspection) -> Iterator[AccountFile]:
-    for number, video in enumerate([row, *row.further_videos]):
+    videos: list[Inspection | FurtherVideo] = [row, *row.further_videos]
+    for number, video in enumerate(videos):
         folder = f"inputs/{number}" if number else "inputs"
         yield AccountFile(row.id, f"{folder}/video", video.video_path)
         if video.annotations_path is not None:

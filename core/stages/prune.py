@@ -17,7 +17,7 @@ def run(task: StageTask) -> StageResult:
     """Write ``graph.npz`` and ``database.db`` as stage `graph` does; what follows after a veto reads these."""
     frames = read_frames(task.input("frames"))
     graph = task.input("graph")
-    position = positions(frames.times_s, frames.n_search)
+    position = positions(frames.moments_s, frames.n_search, frames.videos)
     found = prune(read_graph(graph), read_model(task.input("reduce_refine")), position, frames.n_search)
     write_graph(task.out, found.table)
     known = view_graph.read_frames(database_of(graph), 0, len(frames))

@@ -182,7 +182,7 @@ def test_accounts_are_made_changed_exported_and_deleted(
     done = backend.finished("done", {"quality.json": b"{}"}, owner="shop")
     video = tmp_path / "v.mp4"
     video.write_bytes(b"video")
-    backend.services.artifacts.put(backend.services.inspections.get(done).files.video, video)
+    backend.services.artifacts.put(backend.services.inspections.get(done).files[0].video, video)
     assert call("accounts", "export", "shop", "--out", str(tmp_path / "out"))[0] == exits.DONE
     record = json.loads((tmp_path / "out" / "account.json").read_text())
     assert [one["id"] for one in record["inspections"]] == [done]

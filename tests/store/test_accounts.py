@@ -148,8 +148,8 @@ def test_all_that_an_account_has_is_told_and_deleted(db: Database) -> None:
     run(db, "done", owner="shop", label="blade 4")
     run(db, "other's")
     with db.write() as session:
-        files = InputFiles("v", "0" * 64, "a", "1" * 64)
-        Inspections(db, GRAPH).create_in(session, "waiting", files, make_settings(), "", owner="shop")
+        files, further = InputFiles("v", "0" * 64, "a", "1" * 64), InputFiles("w", "2" * 64, None, None)
+        Inspections(db, GRAPH).create_in(session, "waiting", [files, further], make_settings(), "", owner="shop")
     AuditLog(db).write(Deed("shop", key.id, "POST /v1/inspections", "/v1/inspections", 202, "", "r"))
     data = AccountData(db, "shop")
     record = data.record()
@@ -160,6 +160,7 @@ def test_all_that_an_account_has_is_told_and_deleted(db: Database) -> None:
     assert {(file.inspection_id, file.path) for file in data.files()} >= {
         ("done", "inputs/video"),
         ("waiting", "inputs/annotations"),
+        ("waiting", "inputs/1/video"),
     }
     plan = Plan(db, GRAPH)
     assert sorted(data.delete(plan)) == ["done", "waiting"]

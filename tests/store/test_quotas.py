@@ -37,7 +37,7 @@ def inspect(admission: Admission, owner: str, size: int) -> None:
         place.use(session)
         files, name = InputFiles("v", digest, None, None), digest[:32]
         inspections = Inspections(admission.db, GRAPH)
-        inspections.create_in(session, name, files, make_settings(), "", owner=owner, input_bytes=place.input_bytes)
+        inspections.create_in(session, name, [files], make_settings(), "", owner=owner, input_bytes=place.input_bytes)
 
 
 def upload(admission: Admission, folder: Path, owner: str, size: int) -> None:

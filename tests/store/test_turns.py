@@ -20,7 +20,7 @@ def create(db: Database, name: str, owner: str, **more: object) -> str:
     """An inspection of a video of its own, so that none takes up another's results."""
     files = InputFiles("/v.mp4", hashlib.sha256(name.encode()).hexdigest(), None, None)
     with db.write() as session:
-        Inspections(db, GRAPH).create_in(session, name, files, make_settings(), "", owner=owner, **more)
+        Inspections(db, GRAPH).create_in(session, name, [files], make_settings(), "", owner=owner, **more)
     return name
 
 

@@ -79,7 +79,7 @@ DIFFER = ["focal_lengths_differ"]
 
 @pytest.mark.parametrize(("aspect", "code"), [(0.98, []), (1.02, []), (0.65, DIFFER), (1.04, DIFFER)])
 def test_pixels_are_square(aspect: float, code: list[str]) -> None:
-    assert codes(check_lens(787, 525, np.array([520 * aspect, 520, 393, 262, 0, 0, 0, 0.0]))) == code
+    assert codes(check_lens(787, 525, make_lens(FISHEYE, [520 * aspect, 520, 393, 262, 0, 0, 0, 0]))) == code
 
 
 def test_viewing_angle_inverts_the_polynomial() -> None:

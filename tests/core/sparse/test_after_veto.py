@@ -39,7 +39,7 @@ class Run:
         """Run a stage on everything before it."""
         settings = make_settings("default", {"model.prefer_verified": False})
         inputs, facts = dict(self.inputs), dict(self.facts)
-        task = StageTask(key, args or {}, settings, inputs, facts, Path(), None, self.add(key))
+        task = StageTask(key, args or {}, settings, inputs, facts, (), self.add(key))
         result: StageResult = stage.run(task)
         self.facts[key] = result.facts
         return result.facts
@@ -84,5 +84,5 @@ def test_the_sides_of_a_weld_are_mapped_alone_and_the_larger_one_wins(tmp_path: 
 @pytest.mark.parametrize("name", ["graph", "prune"])
 def test_a_case_reads_the_pruned_graph_where_there_is_one(tmp_path: Path, name: str) -> None:
     inputs = {"graph": tmp_path / "graph", name: tmp_path / name}
-    task = StageTask("extend", {}, make_settings(), inputs, {}, Path(), None, tmp_path)
+    task = StageTask("extend", {}, make_settings(), inputs, {}, (), tmp_path)
     assert task.input("prune", "graph") == tmp_path / name

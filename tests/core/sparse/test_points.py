@@ -115,9 +115,9 @@ def test_points_end_where_a_bundle_adjuster_puts_them(disturbed: pycolmap.Recons
 def test_rays_that_meet_bring_their_points_back(mapped: pycolmap.Reconstruction, loss_px: float) -> None:
     """Newton's method doubles the digits at each step: only the right derivative and the right solution get there."""
     model = pycolmap.Reconstruction(mapped)
-    set_lens(model, 4)
+    set_lens(model, "OPENCV_FISHEYE")
     params = np.array(model.camera(1).params)
-    params[model.camera(1).extra_params_idxs()] = DISTORTION[4]
+    params[model.camera(1).extra_params_idxs()] = DISTORTION["OPENCV_FISHEYE"]
     model.camera(1).params = list(params)
     for point in model.points3D.values():
         for element in point.track.elements:

@@ -92,7 +92,7 @@ def test_facts_count_keys_frames_and_what_lies_beyond_the_film(probed: Path, tmp
     entry = {"detections": [{"bbox": [0.1, 0.1, 0.2, 0.2], "label": "dent"}]}
     file = tmp_path / "late.json"
     file.write_text(json.dumps({f"{0.25 * k:.2f}": entry for k in range(20)} | {"99.00": entry}))
-    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, VIDEO, file, tmp_path)
+    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, (Recording(VIDEO, file),), tmp_path)
     facts = annotations_stage.run(task).facts
     assert (facts["n_keys"], facts["n_detections"], facts["n_without_frame"]) == (21, 21, 1)
     assert facts["labels"] == {"dent": 21}
@@ -101,7 +101,7 @@ def test_facts_count_keys_frames_and_what_lies_beyond_the_film(probed: Path, tmp
 def test_annotations_of_another_film_say_so(probed: Path, tmp_path: Path) -> None:
     file = tmp_path / "other.json"
     file.write_text(json.dumps({f"{90 + k}.50": {} for k in range(4)}))
-    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, VIDEO, file, tmp_path)
+    task = StageTask("annotations", {}, make_settings(), {"probe": probed}, {}, (Recording(VIDEO, file),), tmp_path)
     with pytest.raises(BadInput, match="belong to another video: 4 of 4 time keys") as caught:
         annotations_stage.run(task)
     assert (caught.value.code, caught.value.where) == ("annotations_beyond_video", '"90.50"')

@@ -18,7 +18,7 @@ from tests.core.making_plates import NEAR, detection, scene, times
 from tests.core.making_rows import mapped
 
 A = (-0.8, 0.2, NEAR)
-TIMES_S = times().time_of_index
+TIMES_S = times().moment_of_index
 
 
 def observation(number: int, x: float, radius: float = 0.25, sigma: float | None = 0.1, **more: object) -> Observation:

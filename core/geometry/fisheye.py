@@ -34,3 +34,15 @@ def viewing_angle(radius: float, distortion: F64) -> float | None:
     if not len(reached) or (len(folds) and folds[0] < reached[0]):
         return None
     return float(np.interp(radius, r[: reached[0] + 1], theta[: reached[0] + 1]))
+
+
+def fisheye_radius_and_slope(theta: float, k1: float, k2: float, k3: float, k4: float) -> tuple[float, float]:
+    """`fisheye_radius` of one angle, and its derivative by the angle; for loops that are compiled where they stand.
+
+    It is written in Horner's form, which rounds differently in the last bits than the powers above; both forms stay,
+    because the results of either would change otherwise.
+    """
+    t2 = theta * theta
+    radius = theta * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))
+    slope = 1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))
+    return radius, slope

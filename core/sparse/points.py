@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from core.geometry.fisheye import fisheye_radius_and_slope
 from core.geometry.lens import lens_of
 from core.jit import compiled
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
+
+_fisheye = compiled(fisheye_radius_and_slope)
 
 MAX_STEPS = 25
 CONVERGED = 1e-6
@@ -160,19 +163,6 @@ def _project_perspective(x: float, y: float, z: float, R: F64, lens: F64, jacobi
 
 
 @compiled
-def fisheye_radius_and_slope(theta: float, k1: float, k2: float, k3: float, k4: float) -> tuple[float, float]:
-    """`core.geometry.fisheye.fisheye_radius` of one angle in a compiled loop, and its derivative by the angle.
-
-    It is written in Horner's form, which rounds differently in the last bits than the powers there; both forms stay,
-    because the results of either would change otherwise.
-    """
-    t2 = theta * theta
-    radius = theta * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))
-    slope = 1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))
-    return radius, slope
-
-
-@compiled
 def _project(place: F64, R: F64, t: F64, lens: F64, jacobian: F64) -> tuple[float, float]:
     """Pixel where a camera sees a place (3,); the derivative by the place goes to `jacobian` (2, 3)."""
     x = R[0, 0] * place[0] + R[0, 1] * place[1] + R[0, 2] * place[2] + t[0]
@@ -183,7 +173,7 @@ def _project(place: F64, R: F64, t: F64, lens: F64, jacobian: F64) -> tuple[floa
     # On the axis the direction from it is any; the limit is that of a very small radius.
     radius = max(np.sqrt(x * x + y * y), 1e-9 * abs(z), 1e-150)
     theta = np.arctan2(radius, z)
-    bent, slope = fisheye_radius_and_slope(theta, lens[4], lens[5], lens[6], lens[7])
+    bent, slope = _fisheye(theta, lens[4], lens[5], lens[6], lens[7])
     scale = bent / radius
     square = radius * radius + z * z
     # The two ways in which the pixel's distance from the centre changes: by the radius and by the depth.

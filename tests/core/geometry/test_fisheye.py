@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from core.geometry.fisheye import fisheye_radius, viewing_angle
+from core.geometry.fisheye import fisheye_radius, fisheye_radius_and_slope, viewing_angle
 from core.jit import compiled
-from core.sparse.points import fisheye_radius_and_slope
+
+IN_LOOP = compiled(fisheye_radius_and_slope)
 
 
 def written_out(theta: Any, lens: Any) -> tuple[float, float]:
@@ -19,7 +20,7 @@ def written_out(theta: Any, lens: Any) -> tuple[float, float]:
 
 
 def of_lens(theta: Any, lens: Any) -> tuple[float, float]:
-    return fisheye_radius_and_slope(theta, lens[4], lens[5], lens[6], lens[7])
+    return IN_LOOP(theta, lens[4], lens[5], lens[6], lens[7])
 
 
 def random_lenses(count: int) -> np.ndarray:

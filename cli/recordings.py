@@ -8,7 +8,6 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from cli.input_files import annotation_file
-from core.annotations.foreign.unreadable import is_video_file
 from core.errors import BadInput
 from core.videos import Recording, require_count
 
@@ -61,9 +60,13 @@ def paired(files: Sequence[Path], annotations: Sequence[Path] | None) -> list[Re
         files: as they stand on the command line.
         annotations: what was given as such; None = nothing.
     """
+    # Loaded here: it loads vision libraries, which `--help` does not need.
+    from core.annotations.foreign.unreadable import is_text_file, is_video_file
+
     videos = list(files)
     if annotations is None:
-        alone = len(files) == 2 and not is_video_file(files[1])
+        # Annotations before a video are in the wrong order, and no two videos: who reads them says so.
+        alone = len(files) == 2 and (not is_video_file(files[1]) or is_text_file(files[0]))
         videos, annotations = (videos[:1], videos[1:]) if alone else (videos, [])
     require_count(len(videos))
     notes = [None if str(path) == NONE else path for path in annotations]

@@ -104,7 +104,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
         _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.1),
         _spec("prune", weight=0.1),
-        _spec("part", "mapper", "seed", fan_out=True, weight=0.5),
+        _spec("section", "mapper", "seed", fan_out=True, weight=0.5),
         _spec("reduce_parts", "model.prefer_verified", weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
         _spec(
@@ -275,7 +275,7 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
 
 def _parts(intervals: Sequence[Sequence[int]]) -> list[TaskSpec]:
     """The parts left of a vetoed model, each mapped alone, and the choice among them."""
-    windows = [Window(CaseKind.PART, i, int(start), int(end)) for i, (start, end) in enumerate(intervals)]
+    windows = [Window(CaseKind.SECTION, i, int(start), int(end)) for i, (start, end) in enumerate(intervals)]
     cases = [_case(window, ("prune",)) for window in windows]
     return [*cases, TaskSpec("reduce_parts", ("annotations", "frames", "reduce_refine", *(one.key for one in cases)))]
 

@@ -112,7 +112,7 @@ def build_quality(
         "search": {
             "coarse": spread(cases, CaseKind.COARSE),
             "refined": spread(cases, CaseKind.REFINE),
-            "parts": spread(cases, CaseKind.PART),
+            "parts": spread(cases, CaseKind.SECTION),
             "gain": refinement_gain(cases),
             "weak": weak_cases(cases),
             "losers": _losers(record, cases),

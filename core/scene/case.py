@@ -13,7 +13,7 @@ class CaseKind(StrEnum):
 
     COARSE = "coarse"
     REFINE = "refine"
-    PART = "part"
+    SECTION = "section"
     """Of the frames between places that a check found wrong, after every other case was vetoed."""
 
 
@@ -56,7 +56,7 @@ class CaseRow:
     name: str
     """Name of the case: its segment, first and last frame."""
     kind: CaseKind
-    """`coarse`, `refine` or `part`."""
+    """`coarse`, `refine` or `section`."""
     start: int
     """First frame of its window."""
     end: int

@@ -10,7 +10,7 @@ from core.stages.choice import keep_winner, with_verified
 
 def run(task: StageTask) -> StageResult:
     """Rank the parts and keep the winner's model; `NoReconstruction` when the checks let none pass."""
-    parts = candidates_of(task.facts, CaseKind.PART)
+    parts = candidates_of(task.facts, CaseKind.SECTION)
     if task.settings.model.prefer_verified:
         parts = with_verified(task, parts)
     facts = reduce_parts(task.facts["reduce_refine"], parts)

@@ -26,7 +26,14 @@ from tests.labels import LABELS
 
 def detection(number: int, **more: Any) -> dict[str, Any]:
     row: dict[str, Any] = dict.fromkeys(DETECTIONS.columns)
-    row |= {"id": number, "key": f"{number}.5", "time_s": number + 0.5, "label": "dent", "outcome": "mapped"}
+    row |= {
+        "id": number,
+        "key": f"{number}.5",
+        "time_s": number + 0.5,
+        "label": "dent",
+        "outcome": "mapped",
+        "video": 0,
+    }
     return row | {"box_x1": 0.25, "box_y1": 0.25, "box_x2": 0.5, "box_y2": 0.75, "support_points": 3} | more
 
 
@@ -76,7 +83,7 @@ ROWS: dict[str, Any] = {
     ],
 }
 for _event in ROWS["events"]:
-    _event.update({"n_detections": 2, "n_frames": 2})
+    _event.update({"n_detections": 2, "n_frames": 2, "video": 0})
     _event.update(dict.fromkeys(("x", "y", "z", "radius", "confidence")))
 
 

@@ -80,7 +80,7 @@ def test_errors_are_one_line_whatever_the_file_is_called(tmp_path: Path, capsys:
     assert main(["run", str(video), "--out", str(tmp_path / "out")]) == 2
     said.append(capsys.readouterr().err)
     with pytest.raises(SystemExit, match="2"):
-        main(["probe", "x", f"two\nlines {EVIL}"])
+        main(["status", "x", f"two\nlines {EVIL}"])
     said.append(capsys.readouterr().err)
     for text in said:
         assert_tame(text.encode())

@@ -76,9 +76,9 @@ def test_after_a_veto_every_part_is_a_case_and_all_that_follows_reads_the_pruned
     assert "prune" not in keys(DENSE)
     assert keys(VETOED)[-1] == "prune"
     tasks = {task.key: task for task in expand(make_settings(), AFTER_VETO)}
-    names = ["part_000_0000_0061", "part_001_0061_0200"]
-    assert dict(tasks[f"part/{names[1]}"].args) == {"name": names[1], "start": 61, "end": 200, "warm_from": ""}
-    assert {f"part/{name}" for name in names} <= set(tasks["reduce_parts"].depends)
+    names = ["section_000_0000_0061", "section_001_0061_0200"]
+    assert dict(tasks[f"section/{names[1]}"].args) == {"name": names[1], "start": 61, "end": 200, "warm_from": ""}
+    assert {f"section/{name}" for name in names} <= set(tasks["reduce_parts"].depends)
     assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")
     readers = ("extend", "pieces", "map_defects", "extend@1", "map_defects@1")
     assert all("prune" in tasks[key].depends and "graph" not in tasks[key].depends for key in readers)

@@ -50,6 +50,15 @@ def is_video_file(path: Path) -> bool:
         return False
 
 
+def is_text_file(path: Path) -> bool:
+    """Whether the file begins as JSON or XML do; False for what cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return stream.read(512).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[", b"<")
+    except OSError:
+        return False
+
+
 def binary_kind(data: bytes) -> BadInput | None:
     """The error for what is no text and no zip; None for what may be text."""
     if looks_like_video(data[:512]):

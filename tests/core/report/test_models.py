@@ -132,12 +132,14 @@ def test_with_defects_in_several_models_the_count_is_a_range_and_the_verdict_not
 def test_the_part_of_a_vetoed_model_is_the_selected_case() -> None:
     record = full_record()
     flag = {"code": "parts_after_veto", "severity": "warning", "where": "frames 0-29 of seg_006_0120_0300"}
-    part = case("part_000_0000_0030", 30, 900)
+    part = case("section_000_0000_0030", 30, 900)
     reducer = TaskRecord(
-        "reduce_parts", TaskState.SUCCEEDED, facts={"best": "part_000_0000_0030", "kind": "part", "flags": [flag]}
+        "reduce_parts", TaskState.SUCCEEDED, facts={"best": "section_000_0000_0030", "kind": "section", "flags": [flag]}
     )
     report = build_report(replace(record, tasks=[*record.tasks, part, reducer]))
     assert report.verdict == Verdict.SUSPECT
     assert [flag["code"] for flag in report.quality["flags"]] == ["parts_after_veto"]
-    assert [(row["name"], row["kind"]) for row in report.cases if row["selected"]] == [("part_000_0000_0030", "part")]
+    assert [(row["name"], row["kind"]) for row in report.cases if row["selected"]] == [
+        ("section_000_0000_0030", "section")
+    ]
     assert report.quality["search"]["parts"]["registered_images_max"] == 30

@@ -13,7 +13,7 @@ from core.io.frames import write_frames
 from core.scene.frame import Crop
 from core.settings import make_settings
 from core.stage import Facts, StageResult, StageTask
-from core.stages import part, prune, reduce_parts
+from core.stages import prune, reduce_parts, section
 from core.viewgraph import read_graph
 from tests.core.making_rows import run_frames
 from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
@@ -52,7 +52,7 @@ def test_the_sides_of_a_weld_are_mapped_alone_and_the_larger_one_wins(tmp_path: 
     write_graph(tmp_path / "graph", scene, table)
     run.add("graph")
     write_frames(run.add("frames"), run_frames(N, 0.1), Crop(0, 0, WIDTH, HEIGHT, WIDTH, HEIGHT))
-    whole = run.go(part, "coarse/seg", {"name": "seg_000_0000_0028", "start": 0, "end": N})
+    whole = run.go(section, "coarse/seg", {"name": "seg_000_0000_0028", "start": 0, "end": N})
     assert whole["registered_images"] == N
     model = pycolmap.Reconstruction(run.inputs["coarse/seg"] / "model")
     turn = pycolmap.Rigid3d(pycolmap.Rotation3d(np.array([0.0, np.radians(25.0), 0.0])), np.zeros(3))
@@ -70,11 +70,11 @@ def test_the_sides_of_a_weld_are_mapped_alone_and_the_larger_one_wins(tmp_path: 
     across = (table.pairs[:, 0] <= WELD) & (table.pairs[:, 1] > WELD)
     assert not read_graph(run.inputs["prune"]).n_inliers[across].any()
     for start, end in found["parts"]:
-        name = f"part_000_{start:04d}_{end:04d}"
-        facts = run.go(part, f"part/{name}", {"name": name, "start": start, "end": end})
-        assert (facts["kind"], facts["registered_images"], facts["vetoed"]) == ("part", end - start, 0)
+        name = f"section_000_{start:04d}_{end:04d}"
+        facts = run.go(section, f"section/{name}", {"name": name, "start": start, "end": end})
+        assert (facts["kind"], facts["registered_images"], facts["vetoed"]) == ("section", end - start, 0)
     chosen = run.go(reduce_parts, "reduce_parts")
-    assert (chosen["best"], chosen["kind"]) == (f"part_000_{WELD + 1:04d}_{N:04d}", "part")
+    assert (chosen["best"], chosen["kind"]) == (f"section_000_{WELD + 1:04d}_{N:04d}", "section")
     assert [flag["code"] for flag in chosen["flags"]] == ["parts_after_veto"]
     kept = pycolmap.Reconstruction(run.inputs["reduce_parts"] / "model")
     assert sorted(kept.reg_image_ids()) == list(range(WELD + 2, N + 1))

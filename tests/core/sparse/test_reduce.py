@@ -129,18 +129,25 @@ def test_when_every_case_is_vetoed_the_parts_have_their_turn() -> None:
     refined = reduce_refined(best, [case("refine_000", 170, 9, **BENT)])
     assert (refined["best"], refined["vetoed"], refined["codes"]) == ("seg_000", True, "bent_model")
     assert not reduce_refined(case("seg_000", 180, 9), [])["vetoed"]
-    parts = [case("part_000", 60, 9, verified=1), case("part_001", 20, 9, verified=3), case("part_002", 90, 9, **BENT)]
+    parts = [
+        case("section_000", 60, 9, verified=1),
+        case("section_001", 20, 9, verified=3),
+        case("section_002", 90, 9, **BENT),
+    ]
     facts = reduce_parts(refined, parts)
-    assert [item["name"] for item in facts["ranking"]] == ["part_001", "part_000", "part_002"]
+    assert [item["name"] for item in facts["ranking"]] == ["section_001", "section_000", "section_002"]
     (flag,) = facts["flags"]
     assert (flag["code"], flag["severity"]) == ("parts_after_veto", "warning")
     assert "seg_000, vetoed for bent_model" in flag["where"]
-    assert reduce_parts(refined, [replace(part, verified=2) for part in parts])["best"] == "part_000"
+    assert reduce_parts(refined, [replace(part, verified=2) for part in parts])["best"] == "section_000"
 
 
 @pytest.mark.parametrize(
     ("parts", "says"),
-    [([], "seg_000: bent_model$"), ([case("part_000", 20, 9, **BENT), case("part_001", 0, 0)], "none of its 2 parts")],
+    [
+        ([], "seg_000: bent_model$"),
+        ([case("section_000", 20, 9, **BENT), case("section_001", 0, 0)], "none of its 2 parts"),
+    ],
 )
 def test_without_a_part_that_passes_there_is_no_reconstruction(parts: list[Candidate], says: str) -> None:
     with pytest.raises(NoReconstruction, match=says):

@@ -1,4 +1,4 @@
-"""Stage `part`: one part of a model that the checks vetoed."""
+"""Stage `section`: one part of a model that the checks vetoed."""
 
 from __future__ import annotations
 
@@ -9,4 +9,4 @@ from core.stage import StageResult, StageTask
 
 def run(task: StageTask) -> StageResult:
     """Map the part from scratch; see `core.sparse.cases.run_case`."""
-    return run_case_task(task, CaseKind.PART)
+    return run_case_task(task, CaseKind.SECTION)

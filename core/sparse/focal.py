@@ -146,7 +146,7 @@ class _Span:
         cache = thin_cache(table, frames, everything, settings.verification.min_inliers)
         ranked = rank_initial_pairs(table, settings.mapper.init_min_num_inliers)
         # One radial term is little enough to be free from the start.
-        mapper = settings.mapper.model_copy(update={"refine_distortion": True})
+        mapper = settings.mapper.model_copy(update={"refine_distortion": True, "refine_lens": True})
         options = mapper_options(mapper, threads=1, seed=settings.seed, tuned=True)
         options.multiple_models = False
         # COLMAP's own search of a first pair would try every one, at many times the cost, where wider pairs help more.

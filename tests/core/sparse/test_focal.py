@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from core.features.io import write_features
+from core.graph import STAGES
 from core.matching.keyframes import Keyframes, write_keyframes
-from core.settings import make_settings
+from core.settings import make_settings, only_declared
 from core.sparse import focal as search
 from core.sparse.focal import GAPS, SpanFocal, choose_spans, find_focal, joined
 from core.sparse.lens import fov_from_focal, start_lens
@@ -41,7 +42,10 @@ def task(scene: Scene, folder: Path, fov_deg: float) -> StageTask:
         "source_height": HEIGHT,
         "n_search": len(scene.features),
     }
-    settings = make_settings("default", {"camera.focal_span": 14, "camera.focal_spans": 1})
+    whole = make_settings("default", {"camera.focal_span": 14, "camera.focal_spans": 1})
+    settings = only_declared(
+        whole, STAGES["focal"].settings
+    )  # what it does not declare it does not get in a run either
     return StageTask(
         "focal", {"fov_deg": fov_deg}, settings, {"features/000": features}, {"frames": frames}, (), folder
     )

@@ -43,9 +43,7 @@ def task(scene: Scene, folder: Path, fov_deg: float) -> StageTask:
         "n_search": len(scene.features),
     }
     whole = make_settings("default", {"camera.focal_span": 14, "camera.focal_spans": 1})
-    settings = only_declared(
-        whole, STAGES["focal"].settings
-    )  # what it does not declare it does not get in a run either
+    settings = only_declared(whole, STAGES["focal"].settings)  # as in a run
     return StageTask(
         "focal", {"fov_deg": fov_deg}, settings, {"features/000": features}, {"frames": frames}, (), folder
     )

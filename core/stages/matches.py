@@ -61,5 +61,5 @@ def _all_pairs(task: StageTask) -> list[tuple[int, int]]:
     near = match_pairs(frames.moments_s, frames.n_search, task.settings.matching.window, frames.videos)
     if not task.has("motion"):
         return near
-    far = keyframe_pairs(read_keyframes(task.input("motion")).frames)
-    return sorted({*near, *((a, b) for a, b in far if frames.videos[a] == frames.videos[b])})
+    far, video_of = keyframe_pairs(read_keyframes(task.input("motion")).frames), frames.videos
+    return sorted({*near, *((a, b) for a, b in far if video_of[a] == video_of[b])})

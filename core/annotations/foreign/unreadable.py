@@ -16,6 +16,8 @@ PAGE = "docs/annotations.md"
 _CSV_NUMBERS = re.compile(r"\s*-?[0-9.]+(\s*,\s*-?[0-9.]+){5,9}\s*,?\s*")
 _PARAMETERS = {"preset", "options", "label", "external_id"}
 _VIDEO_STARTS = (b"\x1aE\xdf\xa3", b"OggS", b"FLV", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3", b"0&\xb2u", b".RMF")
+_HEAD_BYTES = 512
+"""Of a file, that tell a video or what is no text."""
 
 
 def unreadable(what: str, advice: str = "", code: str = "annotations_unknown_format") -> BadInput:
@@ -43,25 +45,26 @@ def looks_like_video(head: bytes) -> bool:
 
 def is_video_file(path: Path) -> bool:
     """Whether the file is a video by its first bytes; False for what cannot be read."""
-    try:
-        with path.open("rb") as stream:
-            return looks_like_video(stream.read(512))
-    except OSError:
-        return False
+    return looks_like_video(_head(path))
 
 
 def is_text_file(path: Path) -> bool:
     """Whether the file begins as JSON or XML do; False for what cannot be read."""
+    return _head(path).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[", b"<")
+
+
+def _head(path: Path) -> bytes:
+    """The first bytes of a file; none of what cannot be read."""
     try:
         with path.open("rb") as stream:
-            return stream.read(512).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[", b"<")
+            return stream.read(_HEAD_BYTES)
     except OSError:
-        return False
+        return b""
 
 
 def binary_kind(data: bytes) -> BadInput | None:
     """The error for what is no text and no zip; None for what may be text."""
-    if looks_like_video(data[:512]):
+    if looks_like_video(data[:_HEAD_BYTES]):
         return unreadable("a video", "the video and the annotations are in the wrong order?")
     if data.startswith(b"\x1f\x8b"):
         return unreadable("a file packed by gzip", "unpack it first")
@@ -69,7 +72,7 @@ def binary_kind(data: bytes) -> BadInput | None:
         return unreadable("an archive of a kind that is not read", "pack it as a zip")
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return None
-    if b"\0" in data[:512]:
+    if b"\0" in data[:_HEAD_BYTES]:
         return unreadable("a binary file")
     return None
 

@@ -18,7 +18,8 @@ from store.audit import AuditFilter, AuditLog
 from store.db import Database
 from store.inspections import mark_deleted
 from store.keys import Keys
-from store.models import ACTIVE_INSPECTION, Artifact, FurtherVideo, IdempotencyKey, Inspection, Upload
+from store.leasing import input_files
+from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Upload
 from store.plan import Plan
 
 _PAGE = 500
@@ -121,17 +122,18 @@ def _inspection(row: Inspection) -> dict[str, Any]:
     names = ("id", "state", "label", "external_id", "priority", "parameters", "settings", "error", "attempt")
     times = ("created_at", "started_at", "ended_at", "expires_at")
     hashes = ("video_sha256", "annotations_sha256")
-    further = [{name: getattr(video, name) for name in hashes} for video in row.further_videos]
+    further = [
+        {"video_sha256": one.video_sha256, "annotations_sha256": one.annotations_sha256} for one in input_files(row)[1:]
+    ]
     return plain({name: getattr(row, name) for name in (*names, *times, *hashes)}) | {"further_videos": further}
 
 
 def _inputs(row: Inspection) -> Iterator[AccountFile]:
-    videos: list[Inspection | FurtherVideo] = [row, *row.further_videos]
-    for number, video in enumerate(videos):
+    for number, one in enumerate(input_files(row)):
         folder = f"inputs/{number}" if number else "inputs"
-        yield AccountFile(row.id, f"{folder}/video", video.video_path)
-        if video.annotations_path is not None:
-            yield AccountFile(row.id, f"{folder}/annotations", video.annotations_path)
+        yield AccountFile(row.id, f"{folder}/video", one.video)
+        if one.annotations is not None:
+            yield AccountFile(row.id, f"{folder}/annotations", one.annotations)
 
 
 def _upload(row: Upload) -> dict[str, Any]:

@@ -9,13 +9,14 @@ from core.io.frames import read_crop
 from core.io.sparse import read_model
 from core.io.surface import defect_mesh, supported_mesh
 from core.io.timeline import read_defects
+from core.outputs import SURFACE_GLB
 from core.scene.defect import DefectRecord
 from core.scene.frame import image_name
 from core.scene.views import views_of
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
 from core.viewer.build import with_blades, write_scene
-from core.viewer.scene import FRAMES, FULL, SURFACE_FILE, best_frames
+from core.viewer.scene import FRAMES, FULL, best_frames
 
 
 def run(task: StageTask) -> StageResult:
@@ -28,7 +29,7 @@ def run(task: StageTask) -> StageResult:
     task.report(2, 5, "thinning out the surface")
     scene = write_scene(task.out, mesh, views, read_crop(task.input("frames")), records, full)
     task.report(5, 5, "surface of the page written")
-    return StageResult({"n_faces": scene.surface.faces, "glb_bytes": (task.out / SURFACE_FILE).stat().st_size})
+    return StageResult({"n_faces": scene.surface.faces, "glb_bytes": (task.out / SURFACE_GLB).stat().st_size})
 
 
 def _keep_best(task: StageTask, records: Iterable[DefectRecord]) -> list[int]:

@@ -32,7 +32,9 @@ def write_glb(path: Path, mesh: Mesh, unit: str = "model") -> None:
     positions = (mesh.vertices @ GLTF_FROM_WORLD.T).astype("<f4")
     attributes["POSITION"] = buffer.add(positions, FLOAT, "VEC3", ARRAY_BUFFER, bounds=True)
     normals = vertex_normals(mesh) if mesh.normals is None else mesh.normals
-    attributes["NORMAL"] = buffer.add((unit_rows(normals) @ GLTF_FROM_WORLD.T).astype("<f4"), FLOAT, "VEC3", ARRAY_BUFFER)
+    attributes["NORMAL"] = buffer.add(
+        (unit_rows(normals) @ GLTF_FROM_WORLD.T).astype("<f4"), FLOAT, "VEC3", ARRAY_BUFFER
+    )
     if mesh.colors is not None:
         attributes["COLOR_0"] = buffer.add(linear_rgba(mesh.colors), USHORT, "VEC4", ARRAY_BUFFER, normalized=True)
     for name in ("support", "defect_id"):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from core.json_files import JsonObject
 from core.mapping.scene import oriented
+from core.outputs import SURFACE_GLB
 from core.scene.defect import DefectRecord
 from core.scene.frame import Crop
 from core.scene.views import Views
@@ -18,7 +19,7 @@ from core.surface.ply import Mesh
 from core.surface.support import point_spacing
 from core.viewer.parts import viewer_parts
 from core.viewer.quantized import write_quantized_glb
-from core.viewer.scene import SURFACE_FILE, SurfaceFacts, ViewerScene
+from core.viewer.scene import SurfaceFacts, ViewerScene
 
 F64 = NDArray[np.float64]
 _SPACING_SAMPLE = 20_000
@@ -44,7 +45,7 @@ def write_scene(
     """
     turned = oriented(mesh, views)
     parts = viewer_parts(turned, {record.id: record.faces for record in records})
-    write_quantized_glb(folder / SURFACE_FILE, parts)
+    write_quantized_glb(folder / SURFACE_GLB, parts)
     nodes = tuple(record.id for record in records if len(record.faces))
     faces = sum(len(part.faces) for part in parts.values())
     surface = SurfaceFacts(faces, len(mesh.faces), _spacing(mesh))

@@ -12,8 +12,6 @@ from core.viewer.document import ViewerSource, viewer_document
 
 DOCUMENT = "viewer.json"
 DATA = "data.js"
-VIEWER = "viewer"
-"""Folder of a page below a result or one of its further models."""
 _BUNDLE = "bundle"
 
 POLICY = "; ".join(

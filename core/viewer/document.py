@@ -13,14 +13,14 @@ from typing import Any
 
 from core.flags import Verdict
 from core.json_files import JsonObject
+from core.outputs import SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE
 from core.report.build import Report
 from core.scene.defect import MODEL_UNIT, DefectRecord
 from core.scene.detection import REASONS, Outcome
 from core.scene.frame import image_name
-from core.viewer.scene import FRAMES, SPRITE, SURFACE_FILE, Pictures, ViewerScene, best_frames
+from core.viewer.scene import FRAMES, Pictures, ViewerScene, best_frames
 
 SCHEMA_VERSION = 1
-PAGE = "index.html"
 UNKNOWN_ROW: JsonObject = {"status": "unknown", "reason": "not_computed"}
 
 
@@ -75,7 +75,7 @@ class ViewerSource:
 def page_of(model: int, seen_from: int) -> str:
     """Address of the page of a model relative to that of another."""
     up = "../../../" if seen_from else "../"
-    return f"{up}models/{model}/viewer/{PAGE}" if model else f"{up}viewer/{PAGE}"
+    return f"{up}models/{model}/{VIEWER_PAGE}" if model else f"{up}{VIEWER_PAGE}"
 
 
 def viewer_document(source: ViewerSource) -> JsonObject:
@@ -124,7 +124,7 @@ def _frame_words() -> dict[str, str]:
 
 def _shared(source: ViewerSource) -> str:
     """Folder of the pictures that all models share, relative to the page."""
-    return "../../../viewer/" if source.model else ""
+    return f"../../../{VIEWER}/" if source.model else ""
 
 
 def _size(source: ViewerSource, frame: Mapping[str, Any]) -> tuple[float, float]:
@@ -253,7 +253,7 @@ def _flag(flag: Mapping[str, Any]) -> JsonObject:
 
 
 def _surface(scene: ViewerScene | None) -> JsonObject | None:
-    return None if scene is None else {"file": SURFACE_FILE, **scene.surface.__dict__}
+    return None if scene is None else {"file": SURFACE_GLB, **scene.surface.__dict__}
 
 
 def _why_no_surface(source: ViewerSource) -> str:

@@ -72,7 +72,7 @@ def _cut(mesh: Mesh, faces: Flags) -> Mesh:
     return _rows(mesh, used, flat.reshape(-1, 3).astype(np.int32))
 
 
-def _rows(mesh: Mesh, rows: NDArray[np.int64], faces: NDArray[np.int32]) -> Mesh:
+def _rows(mesh: Mesh, rows: NDArray[np.signedinteger], faces: NDArray[np.int32]) -> Mesh:
     return Mesh(
         mesh.vertices[rows],
         faces,
@@ -89,8 +89,9 @@ def _decimated(mesh: Mesh, max_faces: int) -> Mesh:
     """
     if len(mesh.faces) <= max_faces:
         return mesh
-    full: Any = o3d.geometry.TriangleMesh(  # its stubs know no arrays
-        o3d.utility.Vector3dVector(mesh.vertices), o3d.utility.Vector3iVector(mesh.faces)
+    open3d: Any = o3d  # its stubs lack these parts of it
+    full = open3d.geometry.TriangleMesh(
+        open3d.utility.Vector3dVector(mesh.vertices), open3d.utility.Vector3iVector(mesh.faces)
     )
     thin = full.simplify_quadric_decimation(max_faces, boundary_weight=_BOUNDARY)
     vertices, faces = np.asarray(thin.vertices), np.asarray(thin.triangles, np.int32)

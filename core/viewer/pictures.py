@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import DiskFull, StageFailed
+from core.outputs import SPRITE
 from core.scene.detection import Detection
 from core.scene.frame import RunFrames, image_name
-from core.viewer.scene import FRAMES, FULL, SPRITE, Pictures, Shown, Sprite
+from core.viewer.scene import FRAMES, FULL, Pictures, Shown, Sprite
 
 U8 = NDArray[np.uint8]
 

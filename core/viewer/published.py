@@ -13,7 +13,22 @@ from core.fingerprint import digest_of_file
 from core.flags import Verdict
 from core.io.sparse import open_model
 from core.json_files import JsonObject, read_json
-from core.outputs import DEFECT_SURFACE, DEFECTS, FRAMES, QUALITY, SPARSE, SUMMARY, SURFACE
+from core.outputs import (
+    CONFIDENCE,
+    DEFECT_SURFACE,
+    DEFECTS,
+    DETECTIONS,
+    FRAMES,
+    QUALITY,
+    ROW,
+    SPARSE,
+    SPRITE,
+    SUMMARY,
+    SURFACE,
+    SURFACE_GLB,
+    TIMELINE,
+    VIEWER,
+)
 from core.report.build import Report
 from core.report.csv_form import read_csv
 from core.scene.defect import DefectRecord
@@ -25,15 +40,11 @@ from core.video.probe import probe_video
 from core.video.shown import shown_frames
 from core.videos import input_role
 from core.viewer.build import with_blades, write_scene
-from core.viewer.deliver import VIEWER, write_page
+from core.viewer.deliver import write_page
 from core.viewer.document import ViewerSource
 from core.viewer.pictures import U8, write_pictures
 from core.viewer.scene import FRAMES as PICTURES
-from core.viewer.scene import FULL, SPRITE, SURFACE_FILE, Pictures, Shown, ViewerScene, best_frames
-
-DETECTIONS = "mapping/detections.json"
-TIMELINE = "mapping/timeline.json"
-CONFIDENCE = "mapping/confidence.json"
+from core.viewer.scene import FULL, SCENE_FILE, Pictures, Shown, ViewerScene, best_frames
 
 
 def build_pages(folder: Path, videos: Sequence[Path] = ()) -> list[str]:
@@ -70,12 +81,12 @@ def build_pages(folder: Path, videos: Sequence[Path] = ()) -> list[str]:
                 pictures,
                 model,
                 tuple(models),
-                _object(_root(folder, model) / "row.json"),
+                _object(_root(folder, model) / ROW),
                 _sigmas(_root(folder, model) / CONFIDENCE),
                 why,
             )
-            write_page(made, source, made / SURFACE_FILE)
-            (made / "scene.json").unlink(missing_ok=True)
+            write_page(made, source, made / SURFACE_GLB)
+            (made / SCENE_FILE).unlink(missing_ok=True)
             target = _root(folder, model) / VIEWER
             shutil.rmtree(target, ignore_errors=True)
             made.rename(target)
@@ -188,9 +199,7 @@ def _decoded(videos: Sequence[Path], frames: RunFrames) -> Iterator[tuple[int, U
                     break
 
 
-def _with_pictures(
-    work: Path, made: Path, model: int, scene: ViewerScene | None, report: Report
-) -> ViewerScene | None:
+def _with_pictures(work: Path, made: Path, model: int, scene: ViewerScene | None, report: Report) -> ViewerScene | None:
     """Move the pictures beside the first model's page, and the best views at full size beside every model's own."""
     (made / PICTURES).mkdir()
     wanted: set[int] = set()

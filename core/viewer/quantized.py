@@ -55,7 +55,7 @@ def write_quantized_glb(path: Path, parts: Mapping[str, Mesh], unit: str = "mode
     meshes = [{"name": name, "primitives": [_primitive(buffer, mesh, low, size)]} for name, mesh in filled.items()]
     undo = {"translation": low.tolist(), "scale": [size, size, size]}
     nodes: list[dict[str, object]] = [{"name": name, "mesh": i, **undo} for i, name in enumerate(filled)]
-    world = {"name": "world", "rotation": _HALF_TURN_ABOUT_X}
+    world: dict[str, object] = {"name": "world", "rotation": _HALF_TURN_ABOUT_X}
     nodes.append({**world, "children": list(range(len(filled)))} if filled else world)
     document: dict[str, object] = {
         "asset": {"version": "2.0", "generator": "BladeAtlas", "extras": {"unit": unit}},
@@ -83,9 +83,7 @@ def _primitive(buffer: GlbBuffer, mesh: Mesh, low: F64, size: float) -> dict[str
         "POSITION": buffer.add(steps, USHORT, "VEC3", ARRAY_BUFFER, normalized=True, bounds=True),
         "NORMAL": buffer.add(np.rint(normals * 127).astype(np.int8), BYTE, "VEC3", ARRAY_BUFFER, normalized=True),
         "COLOR_0": buffer.add(linear_rgba(colors), USHORT, "VEC4", ARRAY_BUFFER, normalized=True),
-        "_SUPPORT": buffer.add(
-            np.rint(support * 255).astype(np.uint8), UBYTE, "SCALAR", ARRAY_BUFFER, normalized=True
-        ),
+        "_SUPPORT": buffer.add(np.rint(support * 255).astype(np.uint8), UBYTE, "SCALAR", ARRAY_BUFFER, normalized=True),
         "_BLADE": buffer.add(blade, UBYTE, "SCALAR", ARRAY_BUFFER)
         if blade.any()
         else buffer.add_zeros(n, UBYTE, "SCALAR"),

@@ -13,10 +13,8 @@ FRAMES = "frames"
 """Folder of the pictures that are published."""
 FULL = "full"
 """Folder of the pictures at the source's size of the frames that are published at half of it."""
-SPRITE = "sprite.jpg"
-SURFACE_FILE = "surface.glb"
-_PICTURES = "pictures.json"
-_SCENE = "scene.json"
+PICTURES_FILE = "pictures.json"
+SCENE_FILE = "scene.json"
 BEST_FRAMES = 3
 """Views of a defect whose pictures are kept at the source's size."""
 
@@ -59,12 +57,12 @@ class Pictures:
 
     def write(self, folder: Path) -> None:
         """Write the form that `read` reads."""
-        write_json(folder / _PICTURES, asdict(self))
+        write_json(folder / PICTURES_FILE, asdict(self))
 
     @classmethod
     def read(cls, folder: Path) -> Pictures:
         """Read what `write` wrote."""
-        row: JsonObject = read_json(folder / _PICTURES)
+        row: JsonObject = read_json(folder / PICTURES_FILE)
         return cls(
             width=row["width"],
             height=row["height"],
@@ -109,12 +107,12 @@ class ViewerScene:
 
     def write(self, folder: Path) -> None:
         """Write the form that `read` reads."""
-        write_json(folder / _SCENE, asdict(self))
+        write_json(folder / SCENE_FILE, asdict(self))
 
     @classmethod
     def read(cls, folder: Path) -> ViewerScene:
         """Read what `write` wrote."""
-        row: JsonObject = read_json(folder / _SCENE)
+        row: JsonObject = read_json(folder / SCENE_FILE)
         return cls(
             camera=row["camera"],
             poses={int(index): pose for index, pose in row["poses"].items()},

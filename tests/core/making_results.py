@@ -14,8 +14,11 @@ from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
+from core.io.annotations import read_rows, write_rows
+from core.io.timeline import read_defects, read_events, write_timeline
 from core.report.load import load_tables
 from core.report.record import RunRecord, TaskRecord
+from core.scene.detection import Outcome
 from core.settings import make_settings
 from core.stage import Facts, StageTask
 from core.stages import map_defects, pictures, timeline, viewer
@@ -65,9 +68,29 @@ def _two_models(work: Path, out: Path) -> None:
         write_mesh(mesh / "mesh_poisson.ply", plane(41, 35))
         folders |= {extend.name: extend, mesh.name: mesh}
         facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
-        for stage in (map_defects, timeline, viewer):
+        for stage in (map_defects, timeline):
             _run(stage, piece, work, folders, facts)
+        _number(folders[key_of("timeline", piece)], piece)
+        _run(viewer, piece, work, folders, facts)
     _publish(_record(facts, folders), folders, out)
+
+
+def _number(folder: Path, piece: int) -> None:
+    """Give the tables of a further model its number, and its defects and events their own: the thesis's rules, whose
+    short way is taken here, know one model alone."""
+    if not piece:
+        return
+    defects = [replace(one, id=one.id + 10, model=piece) for one in read_defects(folder)]
+    defects = [replace(one, events=tuple(event + 10 for event in one.events)) for one in defects]
+    events = [replace(one, event_id=one.event_id + 10, defect_id=one.defect_id + 10) for one in read_events(folder)]
+    rows = [
+        replace(one, model=piece, defect_id=None if one.defect_id is None else one.defect_id + 10)
+        if one.outcome == Outcome.MAPPED
+        else one
+        for one in read_rows(folder)
+    ]
+    write_timeline(folder, events, defects, [])
+    write_rows(folder, rows)
 
 
 def _refused(work: Path, out: Path) -> None:

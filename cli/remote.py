@@ -20,7 +20,7 @@ from cli.client.transfers import no_progress
 from cli.input_files import calibration_options, with_format
 from cli.parameters import Parameters, parse_assignment, parse_priority, read_parameters
 from cli.progress import duration
-from cli.recordings import recordings_of
+from cli.recordings import as_files, recordings_of
 from cli.terminal import console, say, say_json, visible
 from core.errors import BadInput
 from core.states import InspectionState
@@ -36,8 +36,8 @@ def submit(parsed: argparse.Namespace) -> int:
     with client_of(parsed) as client:
         with byte_bars() as bars:
             on_bytes = bars.show if bars is not None else no_progress
-            with recordings_of(parsed) as recordings:
-                first, *further = recordings
+            with recordings_of(parsed) as recordings, as_files(recordings) as sent:
+                first, *further = sent
                 inspection = client.submit(
                     first.video, first.annotations, parameters, further=further, on_bytes=on_bytes
                 )

@@ -22,7 +22,7 @@ _EXIT_CODES = (
     "exit codes: 0 done, 1 internal error, 2 bad input or parameters, 3 no reconstruction, 4 partial, 130 interrupted"
 )
 _SHARED = {
-    "probe": ("inputs", "probe"),
+    "probe": ("probe", "probe"),
     "check": ("inputs", "check"),
     "point": ("query", "point"),
     "views": ("query", "views"),

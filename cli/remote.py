@@ -19,9 +19,8 @@ from cli.client.client import chosen
 from cli.client.transfers import no_progress
 from cli.input_files import calibration_options, with_format
 from cli.parameters import Parameters, parse_assignment, parse_priority, read_parameters
-from cli.progress import duration
 from cli.recordings import as_files, recordings_of
-from cli.terminal import console, say, say_json, visible
+from cli.terminal import console, duration, say, say_json, visible
 from core.errors import BadInput
 from core.states import InspectionState
 

@@ -170,7 +170,7 @@ class TaskSpec:
     depends: tuple[str, ...] = ()
     args: Mapping[str, Any] = field(default_factory=dict)
     optional: bool = False
-    """A failure of this task is an outcome: tasks that depend on it go on without its result."""
+    """An expected failure of this task is an outcome: tasks that depend on it go on without its result."""
 
     @property
     def stage(self) -> str:

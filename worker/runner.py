@@ -167,8 +167,7 @@ class TaskRunner:
         return AttemptOutcome.SUCCEEDED if accepted else AttemptOutcome.REFUSED
 
     def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> AttemptOutcome:
-        # A full disk would fail every other task as well, and tolerating it would spoil the result unseen.
-        record = {**error.to_dict(), "stops_run": isinstance(error, DiskFull)}
+        record = {**error.to_dict(), "stops_run": _stops_run(error)}
         retry = error.retryable and error.code not in _SAME_AGAIN
         return self._retried(
             lambda: self.plan.fail(lease, record, retry=retry, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
@@ -193,6 +192,15 @@ class TaskRunner:
 def ids(lease: Lease) -> dict[str, str | int]:
     """What every log line about a lease names."""
     return {"inspection": lease.inspection_id, "stage": lease.key, "attempt": lease.attempt}
+
+
+def _stops_run(error: BladeAtlasError) -> bool:
+    """Whether an error ends the run in an optional task too, because going on would spoil the result unseen.
+
+    A full disk would fail every other task as well. An error that no code raises on purpose is a mistake in the code,
+    never something that the video says.
+    """
+    return isinstance(error, DiskFull) or error.code == BladeAtlasError.code
 
 
 def _as_expected(failure: OSError | BladeAtlasError, key: str) -> BladeAtlasError:

@@ -29,6 +29,7 @@ from store.models import Artifact, Inspection
 from store.records import InputFiles
 from store.settings import DeploymentSettings
 from store.tables import replace_rows
+from tests.databases import put_new_tables
 from tests.store.small_plan import GRAPH, result_for
 
 ROOT = Path(__file__).parents[2]
@@ -121,6 +122,7 @@ class Backend:
 def backend(tmp_path: Path) -> Iterator[Backend]:
     settings = DeploymentSettings(data_dir=tmp_path / "data", reserve_bytes=0)
     woken: list[str] = []
+    put_new_tables(settings.folder("bladeatlas.db"))
     db, artifacts = open_database(settings), open_artifacts(settings)
     services = make_services(settings, db, artifacts, wake=woken.append, graph=GRAPH)
     yield Backend(services, woken)

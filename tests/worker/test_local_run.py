@@ -237,12 +237,22 @@ def test_a_part_that_always_kills_its_process_is_done_without(place: Workplace) 
     assert facts(place, "join")["parts"] == 1
 
 
-def test_a_full_disk_in_an_optional_part_stops_the_run(place: Workplace) -> None:
-    place.control(part__001={"raise": "disk"})
+@pytest.mark.parametrize(
+    ("wish", "code", "message"),
+    [
+        ({"raise": "disk"}, "disk_full", "No space left"),
+        ({"reads": "mesh"}, "internal", "UndeclaredOption: the stage does not declare that it reads Settings.mesh"),
+    ],
+)
+def test_a_full_disk_or_a_mistake_in_the_code_of_an_optional_part_stops_the_run(
+    place: Workplace, wish: dict[str, Any], code: str, message: str
+) -> None:
+    place.control(part__001=wish)
     outcome = place.run()
-    assert outcome.state == "failed"
+    assert (outcome.state, outcome.failed_stage) == ("failed", "part")
     assert outcome.error is not None
-    assert outcome.error.code == "disk_full"
+    assert outcome.error.code == code
+    assert message.lower() in outcome.error.message.lower()
     assert "join" not in place.started()
 
 

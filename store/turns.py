@@ -42,10 +42,9 @@ def tasks_in_turn(announced: ColumnElement[bool], *where: ColumnElement[bool]) -
     running = _running(and_(Task.state == TaskState.RUNNABLE, announced))
     order = (*_within_account(), Task.position.asc())
     rank = func.row_number().over(partition_by=Inspection.owner, order_by=order)
-    place = (func.coalesce(running.c.tasks, 0) + rank, Account.turn_at.asc().nulls_first(), *order)
     ranked = (
         _with_turns(
-            select(Task.id.label("id"), func.row_number().over(order_by=place).label("turn"))
+            select(Task.id.label("id"), (func.coalesce(running.c.tasks, 0) + rank).label("turn"), Account.turn_at)
             .select_from(Task)
             .join(Inspection, Inspection.id == Task.inspection_id),
             running,
@@ -53,9 +52,10 @@ def tasks_in_turn(announced: ColumnElement[bool], *where: ColumnElement[bool]) -
         .where(Task.state == TaskState.RUNNABLE, Inspection.state.in_(LEASABLE), *where)
         .subquery()
     )
+    query = select(Task).join(ranked, ranked.c.id == Task.id).join(Inspection, Inspection.id == Task.inspection_id)
     # The state once more: whoever locks the rows then looks at them as they are by that time.
-    query = select(Task).join(ranked, ranked.c.id == Task.id).where(Task.state == TaskState.RUNNABLE)
-    return query.order_by(ranked.c.turn)
+    query = query.where(Task.state == TaskState.RUNNABLE)
+    return query.order_by(ranked.c.turn, ranked.c.turn_at.asc().nulls_first(), *order)
 
 
 def begin_turn(session: Session, owner: str, now: datetime) -> None:

@@ -144,6 +144,8 @@ class Task(Base):
     """Grows with every lease; only the holder of the newest may end the task."""
     lease_owner: Mapped[str | None] = mapped_column(String(128))
     lease_expires_at: Mapped[datetime | None]
+    announced_at: Mapped[datetime | None]
+    """When a message said last that it can start; None before, and once it was leased. See `store.announcing`."""
     started_at: Mapped[datetime | None]
     ended_at: Mapped[datetime | None]
     seconds: Mapped[float | None]
@@ -352,5 +354,7 @@ class Worker(Base):
     name: Mapped[str] = mapped_column(String(128), primary_key=True)
     host: Mapped[str] = mapped_column(String(128))
     queues: Mapped[list[str]]
+    slots: Mapped[int] = mapped_column(default=0)
+    """Tasks side by side that it takes by message; 0 when it only asks the database."""
     started_at: Mapped[datetime]
     seen_at: Mapped[datetime]

@@ -52,6 +52,15 @@ class Observer(Protocol):
         """A task is over: succeeded, reused, retried, failed, released, refused."""
 
 
+@dataclass(frozen=True)
+class Ending:
+    """How a lease ended."""
+
+    outcome: AttemptOutcome
+    error: BladeAtlasError | None
+    """What the stage, or the runner, failed with."""
+
+
 @dataclass
 class Held:
     """A lease while this process works on it."""
@@ -78,7 +87,7 @@ class TaskRunner:
     interrupted: threading.Event = field(default_factory=threading.Event)
     held: dict[int, Held] = field(default_factory=dict)
 
-    def run(self, lease: Lease) -> str:
+    def run(self, lease: Lease) -> Ending:
         """Execute a lease; returns how it ended."""
         held = Held(lease)
         self.held[lease.task_id] = held
@@ -93,7 +102,7 @@ class TaskRunner:
             self.held.pop(lease.task_id, None)
         self._end_log(lease, outcome)
         self.observer.ended(lease, outcome, error)
-        return outcome
+        return Ending(outcome, error)
 
     def _execute(self, held: Held) -> tuple[AttemptOutcome, BladeAtlasError | None]:
         lease = held.lease

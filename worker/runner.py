@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from core.errors import BladeAtlasError, DiskFull, ResourceError
+from core.errors import BladeAtlasError, DiskFull, ProgrammingError, ResourceError
 from core.settings import Settings
 from core.states import AttemptOutcome
 from core.video.limits import MAX_FRAME_PIXELS
@@ -206,10 +206,10 @@ def ids(lease: Lease) -> dict[str, str | int]:
 def _stops_run(error: BladeAtlasError) -> bool:
     """Whether an error ends the run in an optional task too, because going on would spoil the result unseen.
 
-    A full disk would fail every other task as well. An error that no code raises on purpose is a mistake in the code,
-    never something that the video says.
+    A full disk would fail every other task as well, and a mistake in the code is never something that the video says.
+    What a library raises on hard input (`RuntimeError`, `ValueError`) is an outcome of that task alone.
     """
-    return isinstance(error, DiskFull) or error.code == BladeAtlasError.code
+    return isinstance(error, DiskFull | ProgrammingError)
 
 
 def _as_expected(failure: OSError | BladeAtlasError, key: str) -> BladeAtlasError:

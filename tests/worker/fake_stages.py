@@ -130,6 +130,7 @@ def _behave(task: StageTask) -> None:
         "stage": StageFailed("no surface"),
         "memory": MemoryError(),
         "disk": OSError(errno.ENOSPC, "No space left on device"),
+        "library": RuntimeError("the matrix is singular"),
         "bug": ZeroDivisionError("division by zero"),
     }
     if "raise" in wish:

@@ -117,12 +117,19 @@ def test_monitors_see_each_job_by_name_with_its_worker_and_its_end(broker: str, 
     with listening(app) as state:
         place.start("worker", "--workers", "1")
         try:
-            place.create(name, part__000={"sleep_s": 6}, part__001={"raise": "stage"})
+            place.create(name, part__000={"sleep_s": 12}, part__001={"raise": "stage"})
             wait_for(lambda: place.started(name)["part/000"] == 1)
             with db.read() as session:
                 worker = session.query(Worker).one().name
-            active = app.control.inspect([worker], timeout=5).active()
-            assert [(job["name"], job["args"]) for job in active[worker]] == [("bladeatlas.part", [name, "000"])]
+            shown: dict[str, Any] = {}
+
+            def answers() -> bool:
+                # A busy machine may take longer than an inspection waits.
+                shown.update(app.control.inspect([worker], timeout=5).active() or {})
+                return worker in shown
+
+            wait_for(answers)
+            assert [(job["name"], job["args"]) for job in shown[worker]] == [("bladeatlas.part", [name, "000"])]
             place.wait(name)
             assert place.accepted_once(name) is False, "one part failed"
             # A doubled message: its task is over.
@@ -149,6 +156,9 @@ def ends(state: State, inspection: str) -> list[tuple[tuple[str, ...], str]]:
     found = [job for job in list(state.tasks.values()) if job.args and inspection in job.args]
     parts = {"000", "001"}
     return [
-        ((job.name.removeprefix("bladeatlas."), *(part for part in sorted(parts) if f"'{part}'" in job.args)), job.state)
+        (
+            (job.name.removeprefix("bladeatlas."), *(part for part in sorted(parts) if f"'{part}'" in job.args)),
+            job.state,
+        )
         for job in found
     ]

@@ -257,6 +257,13 @@ def test_a_full_disk_or_a_mistake_in_the_code_of_an_optional_part_stops_the_run(
     assert "join" not in place.started()
 
 
+def test_what_a_library_cannot_do_in_an_optional_part_costs_that_part_alone(place: Workplace) -> None:
+    place.control(part__001={"raise": "library"})
+    outcome = place.run()
+    assert outcome.state == "succeeded"
+    assert "join" in place.started()
+
+
 def test_a_failure_with_something_to_serve_is_partial(place: Workplace) -> None:
     place.control(last={"raise": "stage"})
     outcome = place.run()

@@ -38,6 +38,7 @@ class Settings(Group):
     mesh: groups.MeshSettings = groups.MeshSettings()
     mapping: groups.MappingSettings = groups.MappingSettings()
     timeline: groups.TimelineSettings = groups.TimelineSettings()
+    scale: groups.ScaleSettings = groups.ScaleSettings()
     gallery: groups.GallerySettings = groups.GallerySettings()
     compute: groups.ComputeSettings = groups.ComputeSettings()
     overrides: tuple[str, ...] = option((), "names that the user set, sorted", source="the run")

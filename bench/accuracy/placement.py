@@ -162,15 +162,11 @@ def score_defects(
     owners: Counter[int] = Counter()
     extra = 0
     for record in records:
-        point = aligned_point(list(record.get("centroid") or [None]), record.get("model"), alignments)
-        near = []
-        if point is not None:
-            distances = ((patch_distance(point, defect.patch), key) for key, defect in truth.defects.items())
-            near = [item for item in distances if item[0] <= WRONG_CHORD_SHARE * truth.chord]
-        if near:
-            owners[min(near)[1]] += 1
-        else:
+        owner = owner_of(record, truth, alignments)
+        if owner is None:
             extra += 1
+        else:
+            owners[owner] += 1
     found = sum(1 for key in expected if owners[key])
     split = sum(owners.values()) - len(owners)
     return {
@@ -181,6 +177,16 @@ def score_defects(
         "extra": extra,
         "exact": found == len(expected) and not split and not extra,
     }
+
+
+def owner_of(record: dict[str, Any], truth: Truth, alignments: Mapping[int, Similarity | None]) -> int | None:
+    """The true defect that a record of `defects.json` belongs to; None for none."""
+    point = aligned_point(list(record.get("centroid") or [None]), record.get("model"), alignments)
+    if point is None:
+        return None
+    distances = ((patch_distance(point, defect.patch), key) for key, defect in truth.defects.items())
+    near = [item for item in distances if item[0] <= WRONG_CHORD_SHARE * truth.chord]
+    return min(near)[1] if near else None
 
 
 def persistence_by_record(records: list[dict[str, Any]]) -> dict[int, float | None]:

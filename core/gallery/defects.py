@@ -102,7 +102,8 @@ def _size(record: DefectRecord) -> Extent:
     if record.size is None:
         return record.extent or Extent(None, MODEL_UNIT, None)
     length = record.size.length
-    return Extent(None, record.size.unit, None) if length is None else Extent(length.value, record.size.unit, length.sigma)
+    value, sigma = (None, None) if length is None else (length.value, length.sigma)
+    return Extent(value, record.size.unit, sigma)
 
 
 def _best(views: Sequence[Sighting], frames: RunFrames) -> BestFrame | None:

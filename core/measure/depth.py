@@ -83,10 +83,10 @@ def _terms(local: F64) -> F64:
 
 def _fit(local: F64) -> F64:
     terms, height = _terms(local), local[:, 2]
-    weight = np.ones(len(height))
-    found = np.zeros(terms.shape[1])
+    weight: F64 = np.ones(len(height))
+    found: F64 = np.zeros(terms.shape[1])
     for _ in range(ROUNDS):
-        found = np.linalg.lstsq(terms * weight[:, None], height * weight, rcond=None)[0]
+        found = np.asarray(np.linalg.lstsq(terms * weight[:, None], height * weight, rcond=None)[0], np.float64)
         off = np.abs(height - terms @ found)
         spread = max(_MAD * float(np.median(off)), 1e-300)
         weight = np.sqrt(np.minimum(1.0, 3.0 * spread / np.maximum(off, 1e-300)))

@@ -59,7 +59,9 @@ def ellipse_in(box: Box) -> F64:
     # The polygon has the area of the ellipse: its corners lie a little outside.
     out = float(np.sqrt(2.0 * np.pi / ELLIPSE_CORNERS / np.sin(2.0 * np.pi / ELLIPSE_CORNERS)))
     half = out * np.array([x2 - x1, y2 - y1]) / 2
-    return np.asarray(np.array([x1 + x2, y1 + y2]) / 2 + half * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    return np.asarray(
+        np.array([x1 + x2, y1 + y2]) / 2 + half * np.stack([np.cos(angle), np.sin(angle)], axis=1), np.float64
+    )
 
 
 def signed_distance(xy: F64, polygon: F64) -> F64:
@@ -69,7 +71,7 @@ def signed_distance(xy: F64, polygon: F64) -> F64:
     towards = xy[:, None] - start[None]
     share = np.clip((towards * along).sum(axis=2) / squared, 0.0, 1.0)
     distance = np.sqrt(((towards - share[..., None] * along) ** 2).sum(axis=2)).min(axis=1)
-    return np.where(in_polygon(xy, polygon), distance, -distance)
+    return np.asarray(np.where(in_polygon(xy, polygon), distance, -distance), np.float64)
 
 
 def levels(patch: SurfacePatch, scene: Scene, views: list[SizeView]) -> F64:

@@ -21,8 +21,8 @@ CELLS = 24
 MAX_FACES = 60_000
 """A patch is not divided further beyond this."""
 RINGS = 3
-"""Vertices up to so many edges apart are joined by a straight step. Steps along edges alone are up to 15 % too long
-(the metric of a lattice); over three rings the surplus of a plane is 1 %, and that of a bend stays that of its chord."""
+"""Vertices up to so many edges apart are joined by a straight step: steps along edges alone are up to 15 % too long
+(the metric of a lattice), over three rings the surplus of a plane is 1 %."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ POINTING_PX = 1.0
 AGREE_SIGMAS = 2.0
 """Two scales agree within this many standard deviations of their difference."""
 SAME_TIME_S = 1e-3
-"""A frame is the one told when its time is at least this near, or as near as times of that video are exact to."""
+"""A frame is the one told when its time is at least this near."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,11 @@ def join_scales(scales: Sequence[Scale]) -> FoundScale:
 
 
 def _between_points(
-    settings: ScaleSettings, points: tuple[float, float, float, float], length_mm: float, scene: Scene, frames: RunFrames
+    settings: ScaleSettings,
+    points: tuple[float, float, float, float],
+    length_mm: float,
+    scene: Scene,
+    frames: RunFrames,
 ) -> Scale | str:
     """From a straight length between two places of the surface, or why there is none."""
     view, time_s = _view_at(settings, scene, frames)
@@ -100,7 +104,7 @@ def _between_points(
     length = float(np.linalg.norm(between))
     if length <= 2.0 * scene.spacing:
         return "the pixels told show one place"
-    # Of a pixel: across the sight by the pointing, along it by how steep the surface is there, and by the surface itself.
+    # Of a pixel: across the sight by the pointing, along it by how steep the surface is, and by the surface itself.
     along = np.abs(rays @ (between / length))
     cosine = np.clip(np.abs(hits.cosine), MIN_COSINE, 1.0)
     across = POINTING_PX * hits.distance / scene.focal_px

@@ -58,8 +58,7 @@ class Region:
     def normal(self) -> F64:
         """(3,) mean unit normal of the surface inside."""
         total = self.patch.normals[self.level > 0].sum(axis=0)
-        unit: F64 = total / max(float(np.linalg.norm(total)), 1e-300)
-        return unit
+        return np.asarray(total / max(float(np.linalg.norm(total)), 1e-300), np.float64)
 
     @property
     def at_rim(self) -> bool:
@@ -73,22 +72,27 @@ class Region:
         The end of the length along the surface is looked for from both ends of the straight one (double sweep).
         """
         a, b = self.straight.ends
-        way = self._from(a)
-        far = int(way.argmax())
-        length = max(float(way[b]), float(self._from(far).max()), self.straight.length)
+        ways = self._from(a)
+        far = int(ways.argmax())
+        length = max(float(ways[b]), float(self._from(far).max()), self.straight.length)
         left, right = self.straight.sides
         across = float(np.linalg.norm(self.border[left] - self.border[right]))
         side = max(float(self._from(left)[right]), across)
-        return length / self.straight.length, side / max(across, 1e-300) if self.straight.width > 0 else 1.0
+        return length / self.straight.length, side / across if across > 0 else 1.0
 
     def _from(self, row: int) -> F64:
-        """(k,) way along the surface from one point of the border to all; infinite ways count as straight ones."""
-        off = np.linalg.norm(self.border - self.patch.vertices[self.nearest], axis=1)
-        ways = self.patch.distances(self.nearest[[row]])[0][self.nearest] + off + off[row]
+        """(k,) ways along the surface from one point of the border to all; infinite ways count as straight ones.
+
+        A straight distance times how much longer the way between the vertices next to its ends is than straight.
+        """
+        vertices = self.patch.vertices[self.nearest]
+        ways = self.patch.distances(self.nearest[[row]])[0][self.nearest]
+        between = np.linalg.norm(vertices - vertices[row], axis=1)
         straight = np.linalg.norm(self.border - self.border[row], axis=1)
-        # Close to the start the way over the vertices is a detour.
-        near = straight <= 4.0 * max(float(off.max()), 1e-300)
-        return np.where(near | ~np.isfinite(ways), straight, ways)
+        known = np.isfinite(ways) & (between > 0)
+        ratio = np.divide(ways, between, out=np.ones_like(between), where=known)
+        found: F64 = straight * np.maximum(ratio, 1.0)
+        return found
 
 
 def region_of(patch: SurfacePatch, level: F64) -> Region | None:

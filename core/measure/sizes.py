@@ -15,7 +15,7 @@ from core.mapping.sigma import BOX_JITTER, MASK_JITTER
 from core.mapping.support import box_in_crop_px
 from core.measure.depth import depth_of
 from core.measure.outline import MASK_BORDER_PX, SizeView, ellipse_in, levels, median_level
-from core.measure.patch import cut_patch
+from core.measure.patch import SurfacePatch, cut_patch
 from core.measure.shape import Region, region_of, straight_extents
 from core.scene.detection import Detection
 from core.scene.size import Measure, Size, SizeFrom, Unmeasured, together
@@ -31,7 +31,7 @@ MARGIN = 1.9
 GROWTH, GROWINGS = 1.6, 3
 """A patch that a region reaches the rim of is cut again, larger by this factor, at most so many times."""
 WHOLE = 0.9
-"""Where what the views agree on is shorter than this share of what they see each, it is not the whole of the finding."""
+"""Where what the views agree on is shorter than this share of what they see each, it is only a part."""
 SAME_BOX_IOU = 0.6
 """A mask that overlaps the box of its own detection less is only a part of the finding, and the box counts."""
 VANISHED = 0.5
@@ -81,12 +81,12 @@ def measure_defects(
     """Measure every defect, in units of the model.
 
     A defect is measured from its masks where it has any, else from the ellipses in its boxes: from its best views, by
-    the pixels that they spend on it (`MAX_VIEWS`). The outlines of the views are carried onto the surface, and where at
-    least half of them, by weight, say inside, it is covered. Its length is the largest extent of this region along
-    the surface, its width the extent across that, its area that of the triangles inside, cut at the outline. Of a finding
-    so thin that the outlines miss each other, the weighted median of what the views see each is taken. So it is where the
-    surface does not fill the outlines, as at a nick, which is missing metal: there a view sees at least the extent of its
-    outline across the line of sight at the distance of the place.
+    the pixels that they spend on it (`MAX_VIEWS`). The outlines of the views are carried onto the surface, and where
+    at least half of them, by weight, say inside, it is covered. Its length is the largest extent of this region along
+    the surface, its width the extent across that, its area that of the triangles inside, cut at the outline. Of a
+    finding so thin that the outlines miss each other, the weighted median of what the views see each is taken. So it
+    is where the surface does not fill the outlines, as at a nick, which is missing metal: there a view sees at least
+    the extent of its outline across the line of sight at the distance of the place.
 
     Args:
         members: by defect the mapped observations of it.
@@ -113,15 +113,10 @@ def _measure(
     used = _best(masks or views)
     known = SizeFrom.MASK if masks else SizeFrom.BOX
     reach = MARGIN * _radius(own, place) + 2.0 * scene.spacing
-    for _ in range(GROWINGS):
-        patch = cut_patch(scene.mesh, place, reach)
-        if patch is None:
-            return Size(reason=Unmeasured.NO_SURFACE), {}
-        of_views = levels(patch, scene, used)
-        regions = [region_of(patch, level) for level in of_views]
-        if not any(region is not None and region.at_rim for region in regions):
-            break
-        reach *= GROWTH
+    found = _outlined(scene, used, place, reach)
+    if found is None:
+        return Size(reason=Unmeasured.NO_SURFACE), {}
+    patch, of_views, regions = found
     seen = [
         _Seen(
             view,
@@ -147,9 +142,25 @@ def _measure(
     return size, {one.view.detection: _alone(one, bends, scene.spacing) for one in seen}
 
 
-def _views(
-    own: Sequence[Observation], place: F64, detections: Mapping[int, Detection], scene: Scene
-) -> list[SizeView]:
+def _outlined(
+    scene: Scene, views: list[SizeView], place: F64, reach: float
+) -> tuple[SurfacePatch, F64, list[Region | None]] | None:
+    """A piece of the surface that holds what the views outline, (v, n) levels on it and the region of each view."""
+    found = None
+    for _ in range(GROWINGS):
+        patch = cut_patch(scene.mesh, place, reach)
+        if patch is None:
+            break
+        of_views = levels(patch, scene, views)
+        regions = [region_of(patch, level) for level in of_views]
+        found = patch, of_views, regions
+        if not any(region is not None and region.at_rim for region in regions):
+            break
+        reach *= GROWTH
+    return found
+
+
+def _views(own: Sequence[Observation], place: F64, detections: Mapping[int, Detection], scene: Scene) -> list[SizeView]:
     found = []
     for one in own:
         frame = one.row.frame_index
@@ -207,7 +218,9 @@ def _radius(own: Sequence[Observation], place: F64) -> float:
     return float(np.median(far)) if far else max((one.radius for one in own), default=0.0)
 
 
-def _joined(joined: Region | None, best: Region, seen: Sequence[_Seen], spacing: float) -> tuple[Size, tuple[float, float]]:
+def _joined(
+    joined: Region | None, best: Region, seen: Sequence[_Seen], spacing: float
+) -> tuple[Size, tuple[float, float]]:
     """Size of a defect over its views, and how much longer its length and width are along the surface than straight."""
     weights = np.array([one.view.weight for one in seen])
     length, width, area = (

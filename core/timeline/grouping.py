@@ -96,10 +96,9 @@ class SurfaceGrouping:
         times_s = self.frames.moment_of_index
         found = find_defects(observations, self.scene, times_s, self.doubts)
         events = event_rows(found, times_s)
-        self.report(2, 4, "colouring the surface")
+        self.report(2, 4, "colouring the surface and measuring the defects")
         weight, vertex_defect = paint_defects(self.mesh, found, self.settings, self.threads)
         faces = [own.tolist() for own in faces_of_defects(self.mesh.faces, vertex_defect, len(found.defects))]
-        self.report(2.5, 4, "measuring the defects")
         sizes = _in_unit(_measured(found, self.detections, self.scene), self.scale.scale)
         records = defect_records(found, events, faces, self.scene.model, sizes.defects)
         rows = [_with_size(one.row, sizes.detections.get(one.row.id)) for one in found.observations]

@@ -9,9 +9,14 @@ import numpy as np
 
 from bench.accuracy.align import align, pose_errors
 from bench.accuracy.confidence import score_confidence
-from bench.accuracy.placement import persistence_by_record, place_detections, score_defects, score_placements
+from bench.accuracy.placement import (
+    persistence_by_record,
+    place_detections,
+    score_defects,
+    score_placements,
+    score_sizes,
+)
 from bench.accuracy.result import Result, ResultModel, load_result
-from bench.accuracy.sizes import score_sizes
 from bench.accuracy.surface import Reference, make_reference, score_surface
 from bench.accuracy.truth import Truth, load_truth
 from core.errors import BadInput

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow, Extent, Sighting
 from core.scene.frame import RunFrames, SourceFrame
 
-_UNITS = {MODEL_UNIT: "model units"}
+_UNITS: Mapping[str, str] = {MODEL_UNIT: "model units"}
 """Units of an extent as people read them, where that differs."""
 
 

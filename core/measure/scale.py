@@ -15,7 +15,7 @@ from core.mapping.scene import Scene
 from core.measure.outline import MIN_COSINE
 from core.scene.frame import RunFrames
 from core.scene.size import Scale, ScaleSource
-from core.settings.groups import ScaleSettings
+from core.settings.scale import ScaleSettings
 
 F64 = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Sizes against the truth: errors in shares, whether two standard deviations hold the true value, true sizes of scenes."""
+"""Sizes against the truth: errors, whether two standard deviations hold the true value, true sizes of scenes."""
 
 from __future__ import annotations
 

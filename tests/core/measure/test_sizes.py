@@ -18,7 +18,7 @@ from core.measure.shape import region_of
 from core.measure.sizes import measure_defects
 from core.scene.detection import Detection
 from core.scene.size import Measure, Scale, Size, SizeFrom, Unmeasured
-from core.settings.groups import ScaleSettings
+from core.settings.scale import ScaleSettings
 from core.surface.ply import Mesh
 from tests.core.making_plates import CROP, NEAR, detection, no_matches, pixel, plate, scene, times
 
@@ -208,7 +208,7 @@ def test_a_scale_that_cannot_be_used_says_why(changes: dict[str, object], says: 
 
 def test_a_scale_is_told_whole() -> None:
     for changes in ({"length_mm": None}, {"points": (1.0, 2.0, 1.0, 2.0)}):
-        with pytest.raises(ValueError, match="scale.points"):
+        with pytest.raises(ValueError, match=r"scale\.points"):
             told(**changes)
     assert find_scale(ScaleSettings(), scene(FRAMES), times()).scale is None
 

@@ -150,10 +150,11 @@ STAGES: dict[str, StageSpec] = {
             "timeline",
             *_options("mapping", "method", "radius_fraction", "sigma_fraction"),
             "timeline",
-            version=7,
+            "scale",
+            version=8,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=5, reads_video=True, weight=1),
+        _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),
     )
 }
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 
 from core.errors import BadInput
 
@@ -37,7 +36,7 @@ def is_metadata_name(name: str) -> bool:
     return _NAME.fullmatch(name) is not None and not name.endswith("\n")
 
 
-def parse_metadata(value: Any, where: str) -> dict[str, str]:
+def parse_metadata(value: object, where: str) -> dict[str, str]:
     """The metadata of a parameter file.
 
     Args:
@@ -50,8 +49,8 @@ def parse_metadata(value: Any, where: str) -> dict[str, str]:
     if not isinstance(value, dict):
         raise BadInput("'metadata' must be an object of names and texts", where=where)
     for name, text in value.items():
-        if not is_metadata_name(name):
-            raise BadInput(f"'{name[:64]}' is no name for metadata: small letters, digits and _", where=where)
+        if not isinstance(name, str) or not is_metadata_name(name):
+            raise BadInput(f"'{str(name)[:64]}' is no name for metadata: small letters, digits and _", where=where)
         if not isinstance(text, str) or len(text) > MAX_TEXT or "\0" in text:
             raise BadInput(f"'metadata.{name}' must be a text of at most {MAX_TEXT} characters", where=where)
     require_few(value, where)

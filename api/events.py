@@ -116,7 +116,7 @@ class Reading:
             for event in page:
                 known = event.number
                 yield event_bytes(event)
-            if len(page) == PAGE:
+            if page:  # it may have ended with the last of these: ask again before waiting
                 continue
             if over:
                 yield _END

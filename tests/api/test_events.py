@@ -105,7 +105,12 @@ def test_a_stream_that_is_cut_again_and_again_loses_nothing(place: Backend, serv
     names = [place.create(f"job {number}") for number in range(6)]
     before = httpx.get(f"{address}/v1/events?limit=1000").json()
     assert [one["type"] for one in before["events"]] == ["inspection.queued"] * 6
-    working = [threading.Thread(target=lambda name=name: (place.work(name), place.finish(name))) for name in names]
+
+    def run(name: str) -> None:
+        place.work(name)
+        place.finish(name)
+
+    working = [threading.Thread(target=run, args=(name,)) for name in names]
     for thread in working:
         thread.start()
     seen: list[Event] = []

@@ -160,7 +160,7 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--parameters",
         type=Path,
         metavar="FILE",
-        help="JSON {preset, options {name: value}, label, external_id, priority}",
+        help="JSON {preset, options {name: value}, label, external_id, priority, metadata}",
     )
     run.add_argument(
         "--roi", metavar="full|X0,Y0,X1,Y1", help="region of interest, as shares of the source frame's width and height"

@@ -64,6 +64,7 @@ def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
         parsed.label or base.label,
         parsed.external_id or base.external_id,
         priority,
+        base.metadata,
     )
     wanted.settings()
     return {
@@ -72,6 +73,7 @@ def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
         "label": wanted.label,
         "external_id": wanted.external_id,
         "priority": wanted.priority,
+        "metadata": wanted.metadata,
     }
 
 

@@ -20,6 +20,7 @@ from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 from store.advance import accept, advance
 from store.announcing import unheard
 from store.db import Database
+from store.events import tell_change
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import (
     begin_attempt,
@@ -49,8 +50,9 @@ class Plan:
     def advance(self, inspection_id: str) -> None:
         """Bring a plan up to date with the results known now; harmless at any time."""
         with self.db.write() as session:
-            inspection = lock_inspection(session, inspection_id)
-            advance(session, self.graph, inspection, self.db.now(session))
+            inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
+            advance(session, self.graph, inspection, now)
+            tell_change(session, self.graph, inspection, now)
 
     def lease(
         self,
@@ -118,7 +120,9 @@ class Plan:
             begin_attempt(session, task, now)
             begin_turn(session, inspection.owner, now)
             inspection.state, inspection.started_at = InspectionState.RUNNING, inspection.started_at or now
-            return lease_of(session, inspection, task)
+            lease = lease_of(session, inspection, task)
+            tell_change(session, self.graph, inspection, now)
+            return lease
 
     def heartbeat(self, beats: Iterable[tuple[Lease, float, str]]) -> list[Lease]:
         """Renew leases with their progress; returns those that are lost, whose work must stop."""
@@ -273,6 +277,7 @@ class Plan:
             )
             if session.scalar(running) is None:
                 inspection.state, inspection.ended_at, inspection.updated_at = InspectionState.CANCELLED, now, now
+        tell_change(session, self.graph, inspection, now)
 
 
 def _runnable(inspection_id: Any) -> tuple[ColumnElement[bool], ...]:

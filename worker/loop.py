@@ -155,7 +155,7 @@ class WorkerService:
             settings.heartbeat_s,
         )
         cleaner = Cleaner(
-            Retention(self.database, settings.audit_days),
+            Retention(self.database, settings.audit_days, settings.event_days),
             self.inspections,
             self.plan,
             self.store,

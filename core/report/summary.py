@@ -35,6 +35,7 @@ def build_summary(
         "verdict": verdict,
         "label": record.label or None,
         "external_id": record.external_id or None,
+        "metadata": dict(record.metadata),
         "preset": record.settings.preset,
         "parameters": parameters,
         "inputs": dict(record.inputs),

@@ -86,9 +86,10 @@ def test_the_callers_names_stand_beside_the_result_and_cost_no_work(place: Workp
     place.run(names=Names("stage 2", "WO-1187"))
     place.started()
     for label in ("stage 2", "stage 3"):
-        place.run(names=Names(label, "WO-1187"))
+        place.run(names=Names(label, "WO-1187", {"module": label}))
         summary = json.loads((place.out / "summary.json").read_text())
         assert (summary["label"], summary["external_id"]) == (label, "WO-1187")
+        assert summary["metadata"] == {"module": label}
     assert place.started() == []
 
 

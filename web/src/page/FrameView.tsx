@@ -11,7 +11,7 @@ import {
 } from "../state";
 import { Tile } from "./marks";
 
-/** Width of the picture on the screen over that which fits the pane. */
+/** Width of the picture on the screen over that at which the part of it that was used fills the pane. */
 export const zoom = signal(1);
 const fitted = signal(1);
 let drawn: Overlay | null = null;
@@ -38,7 +38,12 @@ export function FrameView(): JSX.Element {
   useEffect(() => {
     const element = pane.current;
     if (!element) return undefined;
-    const fit = (): void => void (fitted.value = Math.max(80, Math.min(element.clientWidth, (element.clientHeight * size.width) / size.height)));
+    const fit = (): void => {
+      const across = Math.min(size.width, 1.03 * (questions.crop[2] - questions.crop[0]));
+      const down = Math.min(size.height, 1.03 * (questions.crop[3] - questions.crop[1]));
+      fitted.value = Math.max(80, size.width * Math.min(element.clientWidth / across, element.clientHeight / down));
+      centre(element);
+    };
     const observer = new ResizeObserver(fit);
     observer.observe(element);
     fit();
@@ -53,7 +58,7 @@ export function FrameView(): JSX.Element {
       stop();
     };
   }, []);
-  useEffect(() => centre(pane.current), [place.value.f, place.value.d, zoom.value]);
+  useEffect(() => centre(pane.current), [place.value.f, place.value.d, zoom.value, fitted.value]);
   const width = fitted.value * zoom.value;
   return (
     <section class="panel frame" aria-label="Frame">
@@ -71,11 +76,11 @@ export function FrameView(): JSX.Element {
         <button type="button" onClick={stepBoxes} title="Boxes and masks (X)" aria-label={`Boxes and masks: ${boxes.value}; change`}>Boxes: {boxes.value}</button>
         <label class="slide">Overlay <input type="range" min="0" max="1" step="0.05" value={overlay.value} disabled={!one?.registered || !surface} aria-label="How opaque the surface lies over the frame" onInput={(event) => (overlay.value = Number(event.currentTarget.value))} /></label>
         <div class="choice" role="group" aria-label="Size of the picture">
-          <button type="button" onClick={() => (zoom.value = Math.max(1, zoom.value / 1.5))} aria-label="Smaller picture">−</button>
+          <button type="button" onClick={() => (zoom.value = Math.max(0.5, zoom.value / 1.5))} aria-label="Smaller picture">−</button>
           <button type="button" onClick={() => (zoom.value = Math.min(8, zoom.value * 1.5))} aria-label="Larger picture">+</button>
         </div>
       </div>
-      <div class="pane" ref={pane} tabIndex={0} role="group" aria-label="Picture of the frame">
+      <div class={zoom.value > 1 ? "pane large" : "pane"} ref={pane} tabIndex={0} role="group" aria-label="Picture of the frame">
         <div class="picture" style={{ width: `${width}px`, height: `${(width * size.height) / size.width}px` }} onClick={clickPicture}>
           {one?.picture ? (
             <img src={one.picture} alt={alternative()} draggable={false} />
@@ -101,8 +106,9 @@ function alternative(): string {
 
 /** Scrolls to what is selected when the picture is larger than the pane. */
 function centre(pane: HTMLElement | null): void {
-  const at = selectedPixel();
-  if (!pane || !at || zoom.peek() <= 1) return;
+  const [x0, y0, x1, y1] = questions.crop;
+  const at = (zoom.peek() > 1 && selectedPixel()) || ([(x0 + x1) / 2, (y0 + y1) / 2] as const);
+  if (!pane) return;
   const scale = (fitted.peek() * zoom.peek()) / size.width;
   pane.scrollTo(at[0] * scale - pane.clientWidth / 2, at[1] * scale - pane.clientHeight / 2);
 }

@@ -8,7 +8,7 @@ import { data, detectionsOfFrame, marks, order, position, videoStart, visitsOfFi
 import { detection, finding, frame, play, playing, selectDetection, selectFinding, selectFrame, shownFindings, stepFrame } from "../state";
 
 const width = signal(800);
-const LEFT = 92;
+const LEFT = 124;
 const ROW = 18;
 const TOP = 46;
 const end = Math.max(videoStart[videoStart.length - 1] ?? 0, 0.001);
@@ -67,7 +67,7 @@ export function Timeline(): JSX.Element {
               <g key={`d${one.id}`} class={chosen ? "track chosen" : "track"}>
                 {chosen && <rect class="ground" x="0" y={y} width={width.value} height={ROW} />}
                 <path class="mark" transform={`translate(11 ${y + ROW / 2}) scale(5)`} d={mark?.shape ?? ""} fill={mark?.css ?? "gray"} />
-                <text class="lane" x="21" y={y + 13} data-finding={one.id}>D{one.id} {one.label}</text>
+                <text class="lane" x="21" y={y + 13} data-finding={one.id}>{short(`D${one.id} ${one.label}`)}</text>
                 {(visitsOfFinding.get(one.id) ?? []).map((visit) => {
                   const from = x(visit.video ?? 0, visit.start_s);
                   return (
@@ -106,6 +106,11 @@ function Ticks({ height }: { readonly height: number }): JSX.Element {
     }
   }
   return <>{marksAt}</>;
+}
+
+/** A name that fits beside the tracks. */
+function short(name: string): string {
+  return name.length > 15 ? `${name.slice(0, 14)}…` : name;
 }
 
 function keys(event: KeyboardEvent): void {

@@ -65,6 +65,7 @@ function Thumb({ frame, box, width }: { readonly frame: Frame | undefined; reado
         decoding="async"
         style={{
           width: `${size.width * scale}px`,
+          height: `${size.height * scale}px`, // known before it loads, or a lazy picture is never near enough to load
           left: `${-scale * shift((x0 + x1) / 2, seen / 2, size.width)}px`,
           top: `${-scale * shift((y0 + y1) / 2, (seen * 0.75) / 2, size.height)}px`,
         }}

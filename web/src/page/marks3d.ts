@@ -63,11 +63,13 @@ function compass(view: View3D, height: number): SVGElement[] {
     const [right, up] = view.onScreen(d);
     const [dx, dy] = [22 * right, -22 * up];
     const text = document.createElementNS(SVG, "text");
-    text.setAttribute("x", String(x + 1.35 * dx));
-    text.setAttribute("y", String(y + 1.35 * dy + 3));
+    const flat = Math.hypot(dx, dy) || 1;
+    text.setAttribute("x", String(x + dx + (14 * dx) / flat));
+    text.setAttribute("y", String(y + dy + (12 * dy) / flat + 4));
     text.setAttribute("class", "way");
     text.textContent = name;
-    return [path(`M${x} ${y}l${dx} ${dy}`, "cross under"), path(`M${x} ${y}l${dx} ${dy}`, "way"), text];
+    const head = `M${x} ${y}l${dx} ${dy}m${-0.3 * dx - 0.2 * dy} ${-0.3 * dy + 0.2 * dx}l${0.3 * dx + 0.2 * dy} ${0.3 * dy - 0.2 * dx}l${-0.3 * dx + 0.2 * dy} ${-0.3 * dy - 0.2 * dx}`;
+    return [path(head, "cross under"), path(head, "way"), text];
   });
 }
 

@@ -49,7 +49,11 @@ void main() {
   } else {
     if (onBlade > 0.5) base = palette[int(mod(onBlade - 1.0, 8.0))];
   }
-  if (found && abs(owner.x - chosen) < 0.5) base = mix(own, vec3(1.0), 0.35 * stripes(8.0));
+  if (found && abs(owner.x - chosen) < 0.5) {
+    // What was found must stay visible below the mark: thin lines on the picture, wide ones elsewhere.
+    if (layer == 0) base = mix(clamp(encoded(paint.rgb * exposure), 0.0, 1.0), own, fract((gl_FragCoord.x + gl_FragCoord.y) / 14.0) < 0.16 ? 0.9 : 0.12);
+    else base = mix(own, vec3(1.0), 0.35 * stripes(8.0));
+  }
   if (!gl_FrontFacing) { base = mix(vec3(0.42, 0.43, 0.45), vec3(0.33, 0.34, 0.36), stripes(5.0)); }
   result = vec4(base * light, 1.0);
 }`;

@@ -28,6 +28,8 @@ export class View3D {
   private readonly current: LineSegments;
   private pending = 0;
   private clipShare = 0;
+  /** Whether it still shows the whole surface as at first, which a new size must keep in sight. */
+  private untouched = true;
 
   /** Throws where the browser offers no WebGL 2. `drawn` is called after each picture. */
   constructor(
@@ -48,7 +50,10 @@ export class View3D {
     this.cameras.visible = false;
     this.current = lines([], 0xd55e00);
     this.scene.add(this.cameras, this.current);
-    this.orbit = new Orbit(this.up(), surface.radius, () => this.request());
+    this.orbit = new Orbit(this.up(), surface.radius, () => {
+      this.untouched = false;
+      this.request();
+    });
     this.whole();
   }
 
@@ -61,7 +66,8 @@ export class View3D {
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
     this.orbit.camera.aspect = width / height;
-    this.orbit.changed();
+    if (this.untouched) this.whole();
+    else this.orbit.changed();
   }
 
   show(looks: Looks): void {
@@ -81,8 +87,9 @@ export class View3D {
   whole(): void {
     const center = new Vector3(...this.surface.center);
     const forward = this.forward();
-    const fit = this.surface.radius / Math.tan((35 * Math.PI) / 360);
-    this.orbit.place(center.clone().addScaledVector(forward, -1.15 * fit), center);
+    const fit = this.surface.radius / Math.tan((35 * Math.PI) / 360) / Math.min(1, this.orbit.camera.aspect);
+    this.orbit.place(center.clone().addScaledVector(forward, -1.1 * fit), center);
+    this.untouched = true;
   }
 
   /** Comes near a finding, from where it was seen best. */

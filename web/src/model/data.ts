@@ -60,7 +60,8 @@ export interface Finding {
   readonly frames: readonly Sighting[];
   readonly node: string | null;
   readonly best_frames: readonly number[];
-  readonly best?: { readonly frame: number; readonly x: number; readonly y: number } | null;
+  /** In shares of the source picture. */
+  readonly best?: { readonly frame: number; readonly x: number | null; readonly y: number | null } | null;
   readonly size: number | null;
   readonly size_sigma: number | null;
   readonly size_unit?: string;

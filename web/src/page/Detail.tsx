@@ -1,7 +1,7 @@
 /** What is known of the selected finding or detection, and the human's word on it. */
 
 import type { ComponentChildren, JSX } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Detection, Finding } from "../model/data";
 import { REASONS, reviewOf } from "../model/review";
 import { bladeText, certainty, confidenceReasons, measured, percent, reasonText, seconds } from "../model/words";
@@ -107,7 +107,7 @@ function ReviewBar({ one }: { readonly one: Finding }): JSX.Element {
 /** Asks for the word that an action needs; Enter keeps it, Escape leaves. */
 function Ask({ what, label }: { readonly what: "reject" | "relabel" | "note"; readonly label: string }): JSX.Element {
   const field = useRef<HTMLInputElement & HTMLSelectElement>(null);
-  useEffect(() => field.current?.focus(), [what]);
+  useLayoutEffect(() => field.current?.focus(), [what]); // before the next key is pressed
   const done = (event: Event): void => {
     event.preventDefault();
     const value = field.current?.value.trim() ?? "";
@@ -117,7 +117,7 @@ function Ask({ what, label }: { readonly what: "reject" | "relabel" | "note"; re
   };
   const name = what === "reject" ? "Why is it rejected?" : what === "relabel" ? "The right label" : "Note";
   return (
-    <form class="ask" onSubmit={done} onKeyDown={(event) => { if (event.key === "Escape") { event.stopPropagation(); asking.value = null; } }}>
+    <form class="ask" onSubmit={done} onKeyDown={(event) => { if (event.key === "Escape") { event.stopPropagation(); asking.value = null; } else if (event.key === "Enter" && event.target === field.current) done(event); }}>
       <label>{name}
         {what === "reject"
           ? <select ref={field}>{REASONS.map((reason) => <option key={reason}>{reason}</option>)}</select>

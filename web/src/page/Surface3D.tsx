@@ -44,7 +44,7 @@ export function Surface3D(): JSX.Element {
         <button type="button" aria-pressed={measuring.value} disabled={!!why} onClick={toggleMeasuring} title="Distance between two points (M)">Measure</button>
         <label class="slide">Cut <input type="range" min="0" max="1" step="0.01" value={clip.value} disabled={!!why} aria-label="Clip plane: how much of the near side is cut away" onInput={(event) => (clip.value = Number(event.currentTarget.value))} /></label>
       </div>
-      <div class="stage">
+      <div class={measuring.value ? "stage measuring" : "stage"}>
         {why ? <div class="why" role="status"><p><b>No surface is shown.</b></p><p>{why}</p>{data.flags.filter((one) => one.severity === "error").map((one) => <p key={one.code}>{one.text}{one.advice ? ` ${one.advice}` : ""}</p>)}</div> : (
           <>
             <canvas ref={canvas} tabIndex={0} role="img" aria-label="The reconstructed surface. Arrow keys turn it, plus and minus zoom." onKeyDown={turnByKey} />

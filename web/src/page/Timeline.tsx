@@ -108,6 +108,11 @@ function Ticks({ height }: { readonly height: number }): JSX.Element {
   return <>{marksAt}</>;
 }
 
+function detectedIn(id: number): ReadonlySet<number> | null {
+  const within = order.filter((one) => detectionsOfFrame.get(one.index)?.some((each) => each.defect === id));
+  return within.length ? new Set(within.map((one) => one.index)) : null;
+}
+
 /** A name that fits beside the tracks. */
 function short(name: string): string {
   return name.length > 15 ? `${name.slice(0, 14)}…` : name;
@@ -139,7 +144,10 @@ function seek(event: PointerEvent): void {
   const named = event.type === "pointerdown" ? target.getAttribute("data-finding") : null;
   let best: number | null = null;
   let least = Infinity;
+  // On a visit the nearest frame that was detected in, since that shows the finding.
+  const own = named !== null && target.hasAttribute("data-time") ? detectedIn(Number(named)) : null;
   for (const one of order) {
+    if (own && !own.has(one.index)) continue;
     const away = Math.abs(x(one.video, one.time_s) - left);
     if (away < least) [best, least] = [one.index, away];
   }

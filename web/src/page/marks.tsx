@@ -40,7 +40,8 @@ export function Tile({ frame, width = 64 }: { readonly frame: Frame | undefined;
 export function FindingThumb({ finding, width = 60 }: { readonly finding: Finding; readonly width?: number }): JSX.Element | null {
   const frame = frames.get(bestFrame(finding.id) ?? -1);
   const own = finding.detections.map((id) => detections.get(id)).find((one) => one !== undefined && one.frame === frame?.index);
-  const at = finding.best && finding.best.frame === frame?.index ? finding.best : null;
+  const best = finding.best && finding.best.frame === frame?.index && finding.best.x !== null && finding.best.y !== null ? finding.best : null;
+  const at = best && { x: (best.x as number) * size.width, y: (best.y as number) * size.height };
   const box = own?.box ?? (at ? ([at.x - 40, at.y - 40, at.x + 40, at.y + 40] as const) : null);
   return <Thumb frame={frame} box={box} width={width} />;
 }

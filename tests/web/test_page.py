@@ -1,19 +1,25 @@
-"""The inspector's page in a headless browser: what it shows, what it answers, and that nothing of it leaves the folder."""
+"""The inspector's page in a headless browser: what it shows, what it answers, and that it asks nobody else."""
 
 from __future__ import annotations
 
+import gzip
 import json
+import shutil
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
 import pytest
 
 from core.query import Result
+from core.viewer.deliver import POLICY
 from tests.core.making_plates import CROP
 from tests.web.making_page import FAR_FINDING, FRAMES, HOSTILE, NEAR_FINDING, NEAR_PLACE, write_refused, write_result
 
@@ -48,8 +54,6 @@ Open = Callable[..., Opened]
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    import shutil
-
     with sync_api.sync_playwright() as playwright:
         started = playwright.chromium.launch(
             executable_path=shutil.which("chromium-headless-shell"), args=[*NO_GPU, "--no-sandbox"]
@@ -69,7 +73,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def view(browser: Any, folder: Path) -> Iterator[Open]:
     contexts: list[Any] = []
 
-    def open_page(fragment: str = "", page: Path | None = None, **options: Any) -> Opened:
+    def open_page(fragment: str = "", page: Path | str | None = None, **options: Any) -> Opened:
         size = options.pop("size", (1200, 760))
         context = browser.new_context(viewport={"width": size[0], "height": size[1]}, **options)
         contexts.append(context)
@@ -78,7 +82,8 @@ def view(browser: Any, folder: Path) -> Iterator[Open]:
         opened.page.on("pageerror", lambda error: opened.complaints.append(str(error)))
         opened.page.on("request", lambda request: opened.requests.append(request.url))
         started = time.monotonic()
-        opened.page.goto((page or folder / "viewer" / "index.html").as_uri() + fragment)
+        address = page or folder / "viewer" / "index.html"
+        opened.page.goto((address if isinstance(address, str) else address.as_uri()) + fragment)
         opened.page.wait_for_function("window.bladeatlas && window.bladeatlas.ready", timeout=READY_S * 1000)
         opened.ready_s = time.monotonic() - started
         return opened
@@ -96,6 +101,29 @@ def test_it_opens_from_a_folder_and_asks_nobody(view: Open) -> None:
     assert opened.requests
     assert {url.split(":")[0] for url in opened.requests} <= {"file", "data"}
     assert opened.page.evaluate("window.bladeatlas.findings") == 2
+
+
+class Served(SimpleHTTPRequestHandler):
+    """Files under the policy of the product's own servers."""
+
+    def end_headers(self) -> None:
+        self.send_header("Content-Security-Policy", POLICY)
+        super().end_headers()
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Nothing: the tests look at the browser."""
+
+
+def test_it_opens_from_a_server_under_its_policy(view: Open, folder: Path) -> None:
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Served, directory=str(folder / "viewer"))) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        opened = view(f"#d={NEAR_FINDING}", page=f"http://127.0.0.1:{server.server_port}/index.html")
+        faces_follow(opened, NEAR_FINDING)
+        server.shutdown()
+    assert opened.complaints == []
+    assert {url.split("/")[2] for url in opened.requests if url.startswith("http")} == {
+        f"127.0.0.1:{server.server_port}"
+    }
 
 
 def faces_follow(opened: Opened, finding: int) -> None:
@@ -166,7 +194,10 @@ def test_a_camera_in_the_address_is_stood_at(view: Open) -> None:
 def test_pixels_show_what_the_query_says(view: Open, folder: Path) -> None:
     opened, result = view(), Result(folder)
     random = np.random.default_rng(7)
-    asked = [(int(random.choice([*FRAMES, 3])), *(random.random(2) * (CROP.source_width, CROP.source_height))) for _ in range(500)]
+    asked = [
+        (int(random.choice([*FRAMES, 3])), *(random.random(2) * (CROP.source_width, CROP.source_height)))
+        for _ in range(500)
+    ]
     shown = opened.page.evaluate("asked => asked.map(([f, x, y]) => window.bladeatlas.pointAt(f, x, y))", asked)
     near, same = 0, 0
     for (frame, x, y), found in zip(asked, shown, strict=True):
@@ -326,8 +357,6 @@ def test_a_narrow_window_shows_all_faces(view: Open) -> None:
 
 
 def test_the_bundle_is_small() -> None:
-    import gzip
-
     bundle = resources.files("core.viewer") / "bundle"
     assert {file.name for file in bundle.iterdir()} == {"app.js", "index.html", "style.css"}
     assert sum(len(gzip.compress(file.read_bytes(), 9)) for file in bundle.iterdir()) <= 260_000

@@ -41,7 +41,7 @@ function Header(): JSX.Element {
       <h1><bdi>{title}</bdi></h1>
       <p class="lead">
         <span class={`verdict ${verdict}`} title={VERDICTS[verdict] ?? ""}>{verdict}</span>
-        {" "}{data.defects.length} {data.defects.length === 1 ? "finding" : "findings"}, {data.detections.length} detections, {data.frames.length} frames
+        {" "}{data.defects.length} {data.defects.length === 1 ? "finding" : "findings"}, {data.detections.length} {data.detections.length === 1 ? "detection" : "detections"}, {data.frames.length} frames
         {model.unit === "model" ? ", unscaled" : `, in ${model.unit}`}
       </p>
       {models.length > 0 && (

@@ -95,11 +95,15 @@ function Nothing(): JSX.Element {
     <div class="empty">
       <p><b>No finding is on the surface.</b></p>
       {data.message && <p>{data.message}</p>}
-      {data.detections.length === 0 ? <p>The annotations hold no detection inside the video.</p> : <p>{data.detections.length} detections were read. {reasons.size > 0 && "Without a place:"}</p>}
+      {data.detections.length === 0 ? <p>The annotations hold no detection inside the video.</p> : <p>{counted(data.detections.length, "detection")} read. {reasons.size > 0 && "Without a place:"}</p>}
       <ul>{[...reasons].sort((a, b) => b[1] - a[1]).map(([code, count]) => <li key={code}>{count}: {reasonText(data, code)}</li>)}</ul>
       {data.models.length > 0 && <p>The findings of other models are on their own pages, linked above.</p>}
     </div>
   );
+}
+
+function counted(count: number, name: string): string {
+  return `${count} ${name}${count === 1 ? " was" : "s were"}`;
 }
 
 function FindingFilters({ shown }: { readonly shown: number }): JSX.Element {

@@ -45,6 +45,7 @@ export function Timeline(): JSX.Element {
       </div>
       <div class="tracks" ref={box} tabIndex={0} role="slider" aria-label="Playhead" aria-orientation="horizontal" aria-valuemin={0} aria-valuemax={Math.max(0, order.length - 1)} aria-valuenow={at ? (position.get(at.index) ?? 0) : 0} aria-valuetext={at ? `Frame ${at.source_index}, ${seconds(at.time_s)}` : "no frame"} onKeyDown={keys} onPointerDown={seek} onPointerMove={(event) => event.buttons === 1 && seek(event)}>
         <svg width={width.value} height={height} aria-hidden="true">
+          <defs><pattern id="lost" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff" /><rect width="3" height="6" fill="#d98c1f" /></pattern></defs>
           <Ticks height={height} />
           <text class="lane" x="4" y="27">cameras</text>
           <text class="lane" x="4" y="41">detections</text>

@@ -54,23 +54,25 @@ function makeButton(id: number, label: string, parent: HTMLElement): HTMLButtonE
 
 /** Arrows for the pictures' up, and for root and tip when the row is known. */
 function compass(view: View3D, height: number): SVGElement[] {
-  const [x, y] = [34, height - 38];
+  const [x, y] = [42, height - 42];
   const arrows: [string, Vec3][] = [];
   if (data.up) arrows.push(["up", data.up]);
   const row = visibleRow(data.row, view.surface.center);
   if (row) arrows.push(["tip", row.tip], ["root", [-row.tip[0], -row.tip[1], -row.tip[2]]]);
-  return arrows.flatMap(([name, d]) => {
+  if (!arrows.length) return [];
+  const drawn = arrows.flatMap(([name, d]) => {
     const [right, up] = view.onScreen(d);
-    const [dx, dy] = [22 * right, -22 * up];
+    const [dx, dy] = [17 * right, -17 * up];
     const text = document.createElementNS(SVG, "text");
     const flat = Math.hypot(dx, dy) || 1;
-    text.setAttribute("x", String(x + dx + (14 * dx) / flat));
-    text.setAttribute("y", String(y + dy + (12 * dy) / flat + 4));
+    text.setAttribute("x", String(x + dx + (9 * dx) / flat));
+    text.setAttribute("y", String(y + dy + (8 * dy) / flat + 4));
     text.setAttribute("class", "way");
     text.textContent = name;
     const head = `M${x} ${y}l${dx} ${dy}m${-0.3 * dx - 0.2 * dy} ${-0.3 * dy + 0.2 * dx}l${0.3 * dx + 0.2 * dy} ${0.3 * dy - 0.2 * dx}l${-0.3 * dx + 0.2 * dy} ${-0.3 * dy - 0.2 * dx}`;
-    return [path(head, "cross under"), path(head, "way"), text];
+    return [path(head, "way"), text];
   });
+  return [path(`M${x - 33} ${y}a33 33 0 1 0 66 0a33 33 0 1 0-66 0`, "dial"), ...drawn];
 }
 
 function path(d: string, name: string): SVGPathElement {

@@ -84,7 +84,7 @@ def view(browser: Any, folder: Path) -> Iterator[Open]:
         started = time.monotonic()
         address = page or folder / "viewer" / "index.html"
         opened.page.goto((address if isinstance(address, str) else address.as_uri()) + fragment)
-        opened.page.wait_for_function("window.bladeatlas && window.bladeatlas.ready", timeout=READY_S * 1000)
+        opened.page.locator("main").wait_for(timeout=READY_S * 1000)
         opened.ready_s = time.monotonic() - started
         return opened
 
@@ -176,11 +176,11 @@ def test_the_address_keeps_the_state(view: Open) -> None:
     address = page.url
     assert f"d={NEAR_FINDING}" in address
     page.reload()
-    page.wait_for_function("window.bladeatlas && window.bladeatlas.ready")
+    page.locator("main").wait_for()
     assert opened.place()["d"] == NEAR_FINDING
     assert page.url == address
     page.go_back()
-    page.wait_for_function(f"window.bladeatlas.place().d === {FAR_FINDING}")
+    page.locator(".row[aria-current=true]", has_text=f"D{FAR_FINDING}").wait_for()
     faces_follow(opened, FAR_FINDING)
 
 
@@ -310,7 +310,7 @@ def test_a_review_by_keyboard_outlives_a_reload_and_is_saved(view: Open) -> None
     press("Enter")
     press("z")
     page.reload()
-    page.wait_for_function("window.bladeatlas && window.bladeatlas.ready")
+    page.locator("main").wait_for()
     assert page.locator(".review.accepted").count() == 1
     assert page.locator(".review.rejected").count() == 1
     assert "Reviewed 2 of 2" in page.locator(".exports").inner_text()

@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { measured, percent, reasonText, seconds } from "../model/words";
 import { Overlay } from "../scene/overlay";
-import { data, detectionsOfFrame, frames, marks, position, questions, size, surface, surfaceReason } from "../session";
+import { data, detections, detectionsOfFrame, frames, marks, questions, size, surface, surfaceReason } from "../session";
 import {
   asked, askPixel, blade, boxes, detection, finding, frame, layer, overlay, place, seeing, selectFrame, stepFrame, stepSeeing, type Boxes,
 } from "../state";
@@ -188,7 +188,7 @@ function Ranked(): JSX.Element | null {
   const list = seeing.value;
   if (!list.length) return null;
   const subject = place.value.p ? "this point" : `D${finding.value?.id ?? ""}`;
-  const detected = new Set(finding.value?.detections.map((id) => data.detections.find((one) => one.id === id)?.frame) ?? []);
+  const detected = new Set(finding.value?.detections.map((id) => detections.get(id)?.frame) ?? []);
   return (
     <div class="ranked" role="group" aria-label={`Frames that see ${subject}, best first`}>
       <span class="lead">{list.length} {list.length === 1 ? "frame sees" : "frames see"} {subject}</span>
@@ -208,5 +208,3 @@ function Ranked(): JSX.Element | null {
     </div>
   );
 }
-
-export const currentPosition = (): number => position.get(place.peek().f ?? -1) ?? -1;

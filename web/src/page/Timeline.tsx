@@ -3,9 +3,10 @@
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import type { Finding } from "../model/data";
 import { reasonText, seconds } from "../model/words";
-import { data, detectionsOfFrame, marks, order, position, videoStart, visitsOfFinding } from "../session";
-import { detection, finding, frame, play, playing, selectDetection, selectFinding, selectFrame, shownFindings, stepFrame } from "../state";
+import { data, detections, detectionsOfFrame, frames, marks, order, position, videoStart, visitsOfFinding } from "../session";
+import { finding, frame, play, playing, selectDetection, selectFinding, selectFrame, shownFindings, stepFrame } from "../state";
 
 const width = signal(800);
 const LEFT = 124;
@@ -31,10 +32,8 @@ export function Timeline(): JSX.Element {
     fit();
     return () => observer.disconnect();
   }, []);
-  const rows = shownFindings.value;
   const at = frame.value;
-  const now = at ? x(at.video, at.time_s) : LEFT;
-  const height = TOP + ROW * Math.max(1, rows.length) + 6;
+  const height = TOP + ROW * Math.max(1, shownFindings.value.length) + 6;
   return (
     <section class="panel timeline" aria-label="Timeline">
       <div class="bar">
@@ -45,55 +44,76 @@ export function Timeline(): JSX.Element {
       </div>
       <div class="tracks" ref={box} tabIndex={0} role="slider" aria-label="Playhead" aria-orientation="horizontal" aria-valuemin={0} aria-valuemax={Math.max(0, order.length - 1)} aria-valuenow={at ? (position.get(at.index) ?? 0) : 0} aria-valuetext={at ? `Frame ${at.source_index}, ${seconds(at.time_s)}` : "no frame"} onKeyDown={keys} onPointerDown={seek} onPointerMove={(event) => event.buttons === 1 && seek(event)}>
         <svg width={width.value} height={height} aria-hidden="true">
-          <defs><pattern id="lost" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff" /><rect width="3" height="6" fill="#d98c1f" /></pattern></defs>
-          <Ticks height={height} />
-          <text class="lane" x="4" y="27">cameras</text>
-          <text class="lane" x="4" y="41">detections</text>
-          {order.map((one, k) => (
-            <rect key={one.index} class={one.registered ? "registered" : "lost"} x={x(one.video, one.time_s)} y="18" width={Math.max(1, x(one.video, one.time_s + (lasting[k] ?? 0)) - x(one.video, one.time_s))} height="11">
-              {!one.registered && <title>{`Frame ${one.source_index}: ${one.reason_text ?? reasonText(data, one.reason ?? "not_registered")}`}</title>}
-            </rect>
-          ))}
-          {order.map((one) => {
-            const own = detectionsOfFrame.get(one.index) ?? [];
-            if (!own.length) return null;
-            const all = own.every((each) => each.state === "mapped");
-            return <rect key={`n${one.index}`} class={all ? "detected" : "detected some"} x={x(one.video, one.time_s) - 1} y="33" width="2.4" height="8"><title>{`${own.length} detections in frame ${one.source_index}${all ? "" : ", some without a place"}`}</title></rect>;
-          })}
-          {rows.map((one, k) => {
-            const y = TOP + ROW * k;
-            const chosen = finding.value?.id === one.id;
-            const mark = marks.get(one.label);
-            return (
-              <g key={`d${one.id}`} class={chosen ? "track chosen" : "track"}>
-                {chosen && <rect class="ground" x="0" y={y} width={width.value} height={ROW} />}
-                <path class="mark" transform={`translate(11 ${y + ROW / 2}) scale(5)`} d={mark?.shape ?? ""} fill={mark?.css ?? "gray"} />
-                <text class="lane" x="21" y={y + 13} data-finding={one.id}>{short(`D${one.id} ${one.label}`)}</text>
-                {(visitsOfFinding.get(one.id) ?? []).map((visit) => {
-                  const from = x(visit.video ?? 0, visit.start_s);
-                  return (
-                    <rect key={visit.event_id} class="visit" data-finding={one.id} data-time={visit.start_s} x={from - 2} y={y + 3} width={Math.max(5, x(visit.video ?? 0, visit.end_s) - from + 4)} height={ROW - 6} rx="3" style={{ fill: mark?.css ?? "gray" }}>
-                      <title>{`D${one.id} from ${seconds(visit.start_s)} to ${seconds(visit.end_s)}: ${visit.n_detections} detections`}</title>
-                    </rect>
-                  );
-                })}
-                {one.detections.map((id) => {
-                  const own = data.detections[id]?.id === id ? data.detections[id] : data.detections.find((each) => each.id === id);
-                  const shot = own?.frame !== null && own?.frame !== undefined ? order[position.get(own.frame) ?? -1] : undefined;
-                  return shot ? <rect key={id} class="tick" x={x(shot.video, shot.time_s) - 0.6} y={y + 5} width="1.2" height={ROW - 10} /> : null;
-                })}
-              </g>
-            );
-          })}
-          {!rows.length && <text class="lane" x={LEFT} y={TOP + 13}>No finding has a visit here.</text>}
-          {detection.value && detection.value.defect === null && at && <path class="head" d={`M${now - 5} 44l5-6l5 6z`} />}
-          <path class="playhead under" d={`M${now} 4V${height}`} />
-          <path class="playhead" d={`M${now} 4V${height}M${now - 5} 2h10l-5 8z`} />
+          <Bands height={height} wide={width.value} />
+          <Tracks chosen={finding.value?.id ?? null} rows={shownFindings.value} wide={width.value} />
+          {at && <path class="playhead under" d={`M${x(at.video, at.time_s)} 4V${height}`} />}
+          {at && <path class="playhead" d={`M${x(at.video, at.time_s)} 4V${height}M${x(at.video, at.time_s) - 5} 2h10l-5 8z`} />}
         </svg>
       </div>
     </section>
   );
 }
+
+/** Whether a part has to be drawn again; it costs too much to do so with every frame that is played. */
+function differs<Props extends object>(made: (props: Props) => JSX.Element): (props: Props) => JSX.Element {
+  let last: { readonly props: Props; readonly drawn: JSX.Element } | null = null;
+  return (props) => {
+    const names = Object.keys(props) as (keyof Props)[];
+    if (!last || names.some((name) => last?.props[name] !== props[name])) last = { props, drawn: made(props) };
+    return last.drawn;
+  };
+}
+
+/** Cameras and detections of the frames. */
+const Bands = differs(({ height }: { readonly height: number; readonly wide: number }) => (
+  <g>
+    <defs><pattern id="lost" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff" /><rect width="3" height="6" fill="#d98c1f" /></pattern></defs>
+    <Ticks height={height} />
+    <text class="lane" x="4" y="27">cameras</text>
+    <text class="lane" x="4" y="41">detections</text>
+    {order.map((one, k) => (
+      <rect key={one.index} class={one.registered ? "registered" : "lost"} x={x(one.video, one.time_s)} y="18" width={Math.max(1, x(one.video, one.time_s + (lasting[k] ?? 0)) - x(one.video, one.time_s))} height="11">
+        {!one.registered && <title>{`Frame ${one.source_index}: ${one.reason_text ?? reasonText(data, one.reason ?? "not_registered")}`}</title>}
+      </rect>
+    ))}
+    {order.map((one) => {
+      const own = detectionsOfFrame.get(one.index) ?? [];
+      if (!own.length) return null;
+      const all = own.every((each) => each.state === "mapped");
+      return <rect key={`n${one.index}`} class={all ? "detected" : "detected some"} x={x(one.video, one.time_s) - 1} y="33" width="2.4" height="8"><title>{`${own.length} detections in frame ${one.source_index}${all ? "" : ", some without a place"}`}</title></rect>;
+    })}
+  </g>
+));
+
+/** Visits and detections of every finding. */
+const Tracks = differs(({ chosen, rows, wide }: { readonly chosen: number | null; readonly rows: readonly Finding[]; readonly wide: number }) => (
+  <g>
+    {rows.map((one, k) => {
+      const y = TOP + ROW * k;
+      const mark = marks.get(one.label);
+      return (
+        <g key={`d${one.id}`} class={chosen === one.id ? "track chosen" : "track"}>
+          {chosen === one.id && <rect class="ground" x="0" y={y} width={wide} height={ROW} />}
+          <path class="mark" transform={`translate(11 ${y + ROW / 2}) scale(5)`} d={mark?.shape ?? ""} fill={mark?.css ?? "gray"} />
+          <text class="lane" x="21" y={y + 13} data-finding={one.id}>{short(`D${one.id} ${one.label}`)}</text>
+          {(visitsOfFinding.get(one.id) ?? []).map((visit) => {
+            const from = x(visit.video ?? 0, visit.start_s);
+            return (
+              <rect key={visit.event_id} class="visit" data-finding={one.id} data-time={visit.start_s} x={from - 2} y={y + 3} width={Math.max(5, x(visit.video ?? 0, visit.end_s) - from + 4)} height={ROW - 6} rx="3" style={{ fill: mark?.css ?? "gray" }}>
+                <title>{`D${one.id} from ${seconds(visit.start_s)} to ${seconds(visit.end_s)}: ${visit.n_detections} detections`}</title>
+              </rect>
+            );
+          })}
+          {one.detections.map((id) => {
+            const shot = frames.get(detections.get(id)?.frame ?? -1);
+            return shot ? <rect key={id} class="tick" x={x(shot.video, shot.time_s) - 0.6} y={y + 5} width="1.2" height={ROW - 10} /> : null;
+          })}
+        </g>
+      );
+    })}
+    {!rows.length && <text class="lane" x={LEFT} y={TOP + 13}>No finding has a visit here.</text>}
+  </g>
+));
 
 function Ticks({ height }: { readonly height: number }): JSX.Element {
   const step = [0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1800].find((one) => end / one <= Math.max(4, width.value / 90)) ?? 3600;

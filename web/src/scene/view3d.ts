@@ -133,8 +133,10 @@ export class View3D {
     const camera = this.orbit.camera;
     const at = new Vector3(...p).project(camera);
     if (at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05) return null;
+    if (this.clipShare > 0 && new Vector3(...p).sub(camera.position).dot(this.ahead()) < this.clipDistance()) return null;
     const eye = camera.position.toArray() as [number, number, number];
-    const hidden = asHidden && !this.surface.clear(eye, p, 0.02 * this.surface.radius);
+    // What the clip plane takes away hides nothing.
+    const hidden = asHidden && this.clipShare === 0 && !this.surface.clear(eye, p, 0.02 * this.surface.radius);
     return { x: ((at.x + 1) / 2) * this.canvas.clientWidth, y: ((1 - at.y) / 2) * this.canvas.clientHeight, hidden };
   }
 

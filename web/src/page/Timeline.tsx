@@ -32,6 +32,13 @@ export function Timeline(): JSX.Element {
     fit();
     return () => observer.disconnect();
   }, []);
+  useEffect(() => {
+    const row = shownFindings.peek().findIndex((one) => one.id === finding.peek()?.id);
+    const element = box.current;
+    if (!element || row < 0) return;
+    const top = TOP + ROW * row;
+    if (top < element.scrollTop || top + ROW > element.scrollTop + element.clientHeight) element.scrollTop = top - element.clientHeight / 2;
+  }, [finding.value]);
   const at = frame.value;
   const height = TOP + ROW * Math.max(1, shownFindings.value.length) + 6;
   return (
@@ -136,7 +143,7 @@ function detectedIn(id: number): ReadonlySet<number> | null {
 
 /** A name that fits beside the tracks. */
 function short(name: string): string {
-  return name.length > 15 ? `${name.slice(0, 14)}…` : name;
+  return name.length > 14 ? `${name.slice(0, 13)}…` : name;
 }
 
 function keys(event: KeyboardEvent): void {

@@ -74,6 +74,7 @@ STAGES: dict[str, StageSpec] = {
             weight=0.1,
         ),
         _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
+        _spec("pictures", reads_video=True, weight=0.3),
         _spec("features", "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
         _spec("motion", weight=0.4),
         _spec(
@@ -155,6 +156,7 @@ STAGES: dict[str, StageSpec] = {
             weight=0.5,
         ),
         _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),
+        _spec("viewer", weight=2),
     )
 }
 
@@ -214,6 +216,8 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     features = [TaskSpec(chunk_key("features", i), needs, {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
     feature_keys = tuple(task.key for task in features)
     tasks = list(features)
+    # Early: a run that finds no model shows its frames too. Without them the page still has its surface.
+    tasks.append(TaskSpec("pictures", ("probe", "annotations", "frames"), optional=True))
     motion_keys: tuple[str, ...] = ()
     if settings.matching.keyframes:
         tasks.append(TaskSpec("motion", ("frames", *feature_keys)))
@@ -297,6 +301,7 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: st
     dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
     tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", graph, "extend", *dense_keys)))
     tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "map_defects")))
+    tasks.append(TaskSpec("viewer", ("frames", "pictures", "extend", "mesh", "timeline")))
     if settings.model.further and "pieces" not in facts:
         return tasks
     n_pieces = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
@@ -333,6 +338,9 @@ def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec
         ),
         TaskSpec(
             key("timeline"), ("annotations", "frames", *surface, key("map_defects"), *timelines), one, optional=True
+        ),
+        TaskSpec(
+            key("viewer"), ("frames", "pictures", key("extend"), key("mesh"), key("timeline")), one, optional=True
         ),
     ]
 

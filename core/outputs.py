@@ -17,10 +17,26 @@ SURFACE = "dense/mesh_poisson.ply"
 """Supported surface."""
 DEFECT_SURFACE = "mapping/mesh_defects.ply"
 """Surface in the colours of its defects."""
+CONFIDENCE = "mapping/confidence.json"
+"""What the confidence of every placed detection is made of."""
+DETECTIONS = "mapping/detections.json"
+"""Rows of all detections."""
+TIMELINE = "mapping/timeline.json"
+"""Rows of all events."""
 DEFECTS = "mapping/defects.json"
 """Records of the defects."""
 FRAMES = "frames.csv"
 """Frames that took part."""
+ROW = "row.json"
+"""The row of blades."""
+VIEWER = "viewer"
+"""Folder of the page of a model, below it: what the stages left, and what is written when it is published."""
+VIEWER_PAGE = f"{VIEWER}/index.html"
+"""The page to open."""
+SURFACE_GLB = "surface.glb"
+"""In that folder: the surface."""
+SPRITE = "sprite.jpg"
+"""In that folder: thumbnails of all frames."""
 QUALITY = "quality.json"
 """Verdict, flags and counts."""
 SUMMARY = "summary.json"
@@ -43,6 +59,12 @@ class Output:
     """Says where defects are, so it is not published when the model was refused."""
 
 
+_OF_A_VIEWER: tuple[Output, ...] = (
+    Output(f"{VIEWER}/{SURFACE_GLB}", (("viewer", SURFACE_GLB),), needs_trust=True),
+    # The best views at full size: they take the places of those that `pictures` made at half of it.
+    Output(f"{VIEWER}/frames", (("viewer", "frames"),), folder=True, needs_trust=True),
+)
+
 OUTPUTS: tuple[Output, ...] = (
     Output(SPARSE, (("extend", "model"), ("confirm", "model"), (BEST_CASE, "model")), folder=True),
     Output(FUSED, (("fuse", "fused.ply"),)),
@@ -51,8 +73,11 @@ OUTPUTS: tuple[Output, ...] = (
     Output(DEFECT_SURFACE, (("timeline", "mesh_defects.ply"),), needs_trust=True),
     Output("mapping/mesh_defects.glb", (("timeline", "mesh_defects.glb"),), needs_trust=True),
     Output("mapping/defect_points.ply", (("map_defects", "defect_points.ply"),), needs_trust=True),
-    Output("mapping/confidence.json", (("timeline", "confidence.json"),), needs_trust=True),
+    Output(CONFIDENCE, (("timeline", "confidence.json"),), needs_trust=True),
     Output("gallery", (("gallery", ""),), folder=True),
+    Output(f"{VIEWER}/frames", (("pictures", "frames"),), folder=True),
+    Output(f"{VIEWER}/{SPRITE}", (("pictures", SPRITE),)),
+    *_OF_A_VIEWER,
 )
 
 TABLES: tuple[str, ...] = (
@@ -60,9 +85,9 @@ TABLES: tuple[str, ...] = (
     "cases.csv",
     "cases.json",
     "mapping/detections.csv",
-    "mapping/detections.json",
+    DETECTIONS,
     "mapping/timeline.csv",
-    "mapping/timeline.json",
+    TIMELINE,
     DEFECTS,
     QUALITY,
     SUMMARY,
@@ -73,6 +98,7 @@ TABLES: tuple[str, ...] = (
 OF_FURTHER_MODELS: tuple[Output, ...] = (
     Output(SPARSE, (("extend", "model"),), folder=True),
     *(output for output in OUTPUTS if output.path.startswith(("dense/", "mapping/"))),
+    *_OF_A_VIEWER,
 )
 """Published below ``models/N/`` for every further model that came to its end."""
 

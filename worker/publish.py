@@ -30,6 +30,7 @@ from core.states import TaskState, run_state
 from core.task_key import key_of
 from core.versions import all_versions
 from core.videos import input_role
+from core.viewer.pages import write_pages
 from store.files import ArtifactStore, Stored
 from store.inspections import Inspections
 from store.json_log import logger
@@ -139,7 +140,8 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
     scratch.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="tables-", dir=scratch) as folder:
         write_tables(report, Path(folder))
-        yield Collection(report, files, {path: Path(folder) / path for path in TABLES})
+        pages = write_pages(report, folders, files, Path(folder))
+        yield Collection(report, files, {path: Path(folder) / path for path in (*pages, *TABLES)})
 
 
 def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:

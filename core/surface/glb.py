@@ -14,8 +14,10 @@ from core.surface.ply import Mesh, Values
 GLTF_FROM_WORLD = np.diag([1.0, -1.0, -1.0])
 """glTF is y-up and looks along -z; COLMAP's camera frames, and so its worlds, are y-down and look along +z."""
 
-_FLOAT, _USHORT, _UINT = 5126, 5123, 5125
-_ARRAY, _INDICES = 34962, 34963
+BYTE, UBYTE, USHORT, UINT, FLOAT = 5120, 5121, 5123, 5125, 5126
+"""Types of components of an accessor (glTF 2.0, 3.6.2.2)."""
+ARRAY_BUFFER, INDEX_BUFFER = 34962, 34963
+"""Targets of a view of the buffer."""
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 
 
@@ -25,21 +27,23 @@ def write_glb(path: Path, mesh: Mesh, unit: str = "model") -> None:
     Vertex colours are sRGB in the mesh and linear in glTF; they are stored with 16 bits so that dark tones
     keep their steps. Numbers of defects are floats, because glTF knows no 32-bit integer attribute.
     """
-    buffer = _Buffer()
+    buffer = GlbBuffer()
     attributes: dict[str, int] = {}
     positions = (mesh.vertices @ GLTF_FROM_WORLD.T).astype("<f4")
-    attributes["POSITION"] = buffer.add(positions, _FLOAT, "VEC3", _ARRAY, bounds=True)
+    attributes["POSITION"] = buffer.add(positions, FLOAT, "VEC3", ARRAY_BUFFER, bounds=True)
     normals = vertex_normals(mesh) if mesh.normals is None else mesh.normals
-    attributes["NORMAL"] = buffer.add((_unit_rows(normals) @ GLTF_FROM_WORLD.T).astype("<f4"), _FLOAT, "VEC3", _ARRAY)
+    attributes["NORMAL"] = buffer.add(
+        (unit_rows(normals) @ GLTF_FROM_WORLD.T).astype("<f4"), FLOAT, "VEC3", ARRAY_BUFFER
+    )
     if mesh.colors is not None:
-        attributes["COLOR_0"] = buffer.add(_linear_rgba(mesh.colors), _USHORT, "VEC4", _ARRAY, normalized=True)
+        attributes["COLOR_0"] = buffer.add(linear_rgba(mesh.colors), USHORT, "VEC4", ARRAY_BUFFER, normalized=True)
     for name in ("support", "defect_id"):
         if name in mesh.extra:
             values = mesh.extra[name].astype("<f4")
-            attributes[f"_{name.upper()}"] = buffer.add(values, _FLOAT, "SCALAR", _ARRAY)
-    indices = buffer.add(mesh.faces.astype("<u4").ravel(), _UINT, "SCALAR", _INDICES)
+            attributes[f"_{name.upper()}"] = buffer.add(values, FLOAT, "SCALAR", ARRAY_BUFFER)
+    indices = buffer.add(mesh.faces.astype("<u4").ravel(), UINT, "SCALAR", INDEX_BUFFER)
     document = _document(buffer, attributes, indices, unit)
-    _write(path, document, bytes(buffer.data))
+    write_document(path, document, bytes(buffer.data))
 
 
 def vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
@@ -50,15 +54,16 @@ def vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
     for axis in range(3):
         for corner in range(3):
             total[:, axis] += np.bincount(mesh.faces[:, corner], face[:, axis], minlength=len(total))
-    return _unit_rows(total)
+    return unit_rows(total)
 
 
-def _unit_rows(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def unit_rows(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 3) the vectors at unit length; (0, 0, 1) for those without one."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.where(length > 0, vectors / np.where(length > 0, length, 1.0), (0.0, 0.0, 1.0))
 
 
-def _linear_rgba(colors: NDArray[np.uint8]) -> NDArray[np.uint16]:
+def linear_rgba(colors: NDArray[np.uint8]) -> NDArray[np.uint16]:
     """(n, 4) linear colours in 16 bits from sRGB bytes (IEC 61966-2-1), opaque."""
     level = np.arange(256) / 255.0
     linear = np.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4)
@@ -68,8 +73,8 @@ def _linear_rgba(colors: NDArray[np.uint8]) -> NDArray[np.uint16]:
     return rgba
 
 
-class _Buffer:
-    """The binary chunk and the accessors into it."""
+class GlbBuffer:
+    """The binary chunk of a GLB and the accessors into it."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -87,8 +92,16 @@ class _Buffer:
         bounds: bool = False,
     ) -> int:
         """Append an array and give the index of its accessor."""
-        raw = np.ascontiguousarray(values).tobytes()
-        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw), "target": target})
+        rows = np.ascontiguousarray(values)
+        view: dict[str, object] = {"buffer": 0, "byteOffset": len(self.data)}
+        size = rows.nbytes // len(rows) if len(rows) else 0
+        if target == ARRAY_BUFFER and size % 4:  # the elements of an attribute begin at multiples of four bytes
+            size_before, size = size, size + -size % 4
+            padded = np.zeros((len(rows), size), np.uint8)
+            padded[:, :size_before] = rows.view(np.uint8).reshape(len(rows), size_before)
+            rows, view["byteStride"] = padded, size
+        raw = rows.tobytes()
+        self.views.append({**view, "byteLength": len(raw), "target": target})
         self.data += raw + b"\0" * (-len(raw) % 4)
         accessor: dict[str, object] = {
             "bufferView": len(self.views) - 1,
@@ -104,8 +117,13 @@ class _Buffer:
         self.accessors.append(accessor)
         return len(self.accessors) - 1
 
+    def add_zeros(self, count: int, component: int, kind: str) -> int:
+        """An accessor of so many zeros, which take no byte, and its index."""
+        self.accessors.append({"componentType": component, "count": count, "type": kind})
+        return len(self.accessors) - 1
 
-def _document(buffer: _Buffer, attributes: dict[str, int], indices: int, unit: str) -> dict[str, object]:
+
+def _document(buffer: GlbBuffer, attributes: dict[str, int], indices: int, unit: str) -> dict[str, object]:
     return {
         "asset": {
             "version": "2.0",
@@ -125,7 +143,8 @@ def _document(buffer: _Buffer, attributes: dict[str, int], indices: int, unit: s
     }
 
 
-def _write(path: Path, document: dict[str, object], binary: bytes) -> None:
+def write_document(path: Path, document: dict[str, object], binary: bytes) -> None:
+    """Write the container of a glTF document and its one buffer."""
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
     total = 12 + 8 + len(text) + 8 + len(binary)

@@ -14,6 +14,7 @@ from core.report.record import RunRecord
 from core.settings import make_settings
 from core.states import RunState
 from core.task_key import stage_of
+from core.viewer.deliver import bundle
 from store.db import Database, open_sqlite
 from store.inspections import Inspections
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow
@@ -43,6 +44,9 @@ PUBLISHED = {
     "gallery/0001.jpg",
     "gallery/mesh_1.png",
 }
+PAGE = {f"viewer/{name}" for name in (*bundle(), "viewer.json", "data.js")}
+"""Of a run that has frames to show."""
+WRITTEN = PAGE | set(TABLES)
 
 
 @pytest.fixture
@@ -72,7 +76,7 @@ def published(hidden: Path) -> set[str]:
 
 def test_a_whole_run_publishes_every_name_of_the_contract(hidden: Path) -> None:
     publish(full_record(), results(hidden, "a", list(FILES_OF)), hidden.parent, hidden)
-    assert published(hidden) == PUBLISHED | set(TABLES)
+    assert published(hidden) == PUBLISHED | WRITTEN
     assert (hidden.parent / "sparse/cameras.bin").read_text() == "a extend model/cameras.bin"
     assert json.loads((hidden.parent / "summary.json").read_text())["state"] == "succeeded"
     assert [path.name for path in hidden.iterdir() if path.name != "results"] == ["published.json"]
@@ -83,7 +87,7 @@ def test_further_models_lie_beside_the_first_when_they_came_to_their_end(hidden:
     folders = results(hidden, "a", [*FILES_OF, *(f"{stage}@1" for stage in own), "extend@2", "mesh@2"])
     publish(full_record(), folders, hidden.parent, hidden)
     further = {name for name in PUBLISHED if name.startswith(("sparse/", "dense/", "mapping/"))}
-    assert published(hidden) == PUBLISHED | set(TABLES) | {f"models/1/{name}" for name in further}
+    assert published(hidden) == PUBLISHED | WRITTEN | {f"models/1/{name}" for name in further}
     assert (hidden.parent / "models/1/dense/fused.ply").read_text() == "a fuse@1 fused.ply"
 
 
@@ -91,7 +95,7 @@ def test_what_is_no_longer_there_is_taken_away(hidden: Path) -> None:
     publish(full_record(), results(hidden, "a", list(FILES_OF)), hidden.parent, hidden)
     (hidden.parent / "mine.txt").write_text("of the user")
     publish(failed_record(), {}, hidden.parent, hidden)
-    assert published(hidden) == {*TABLES, "mine.txt"}
+    assert published(hidden) == {*WRITTEN, "mine.txt"}
     assert not (hidden.parent / "gallery").exists()
 
 

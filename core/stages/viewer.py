@@ -1,0 +1,45 @@
+"""Stage `viewer`: the surface of one model as the page shows it, its poses, and the best views at full size."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable
+
+from core.io.frames import read_crop
+from core.io.sparse import read_model
+from core.io.surface import defect_mesh, supported_mesh
+from core.io.timeline import read_defects
+from core.outputs import SURFACE_GLB
+from core.scene.defect import DefectRecord
+from core.scene.frame import image_name
+from core.scene.views import views_of
+from core.stage import StageResult, StageTask
+from core.surface.ply import read_mesh
+from core.viewer.build import with_blades, write_scene
+from core.viewer.scene import FRAMES, FULL, best_frames
+
+
+def run(task: StageTask) -> StageResult:
+    """Write `surface.glb`, `scene.json` and `frames/`. Facts: n_faces, glb_bytes."""
+    views = views_of(read_model(task.input("extend")))
+    mesh = with_blades(read_mesh(supported_mesh(task.input("mesh"))), read_mesh(defect_mesh(task.input("timeline"))))
+    records = read_defects(task.input("timeline"))
+    task.report(1, 5, "copying the best views")
+    full = _keep_best(task, records)
+    task.report(2, 5, "thinning out the surface")
+    scene = write_scene(task.out, mesh, views, read_crop(task.input("frames")), records, full)
+    task.report(5, 5, "surface of the page written")
+    return StageResult({"n_faces": scene.surface.faces, "glb_bytes": (task.out / SURFACE_GLB).stat().st_size})
+
+
+def _keep_best(task: StageTask, records: Iterable[DefectRecord]) -> list[int]:
+    """Copy the pictures of the best views that are published at half size only; gives their frames."""
+    if "pictures" not in task.inputs:  # it may fail, and the surface is worth having without
+        return []
+    source = task.input("pictures") / FULL
+    wanted = sorted({index for record in records for index in best_frames(record)})
+    kept = [index for index in wanted if (source / image_name(index)).is_file()]
+    (task.out / FRAMES).mkdir()
+    for index in kept:
+        shutil.copyfile(source / image_name(index), task.out / FRAMES / image_name(index))
+    return kept

@@ -1,0 +1,95 @@
+"""The surface and the scene of one model, written from its meshes, views and defects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.json_files import JsonObject
+from core.mapping.scene import oriented
+from core.outputs import SURFACE_GLB
+from core.scene.defect import DefectRecord
+from core.scene.frame import Crop
+from core.scene.views import Views
+from core.surface.ply import Mesh
+from core.surface.support import point_spacing
+from core.viewer.parts import viewer_parts
+from core.viewer.quantized import write_quantized_glb
+from core.viewer.scene import SurfaceFacts, ViewerScene
+
+F64 = NDArray[np.float64]
+_SPACING_SAMPLE = 20_000
+
+
+def write_scene(
+    folder: Path,
+    mesh: Mesh,
+    views: Views,
+    crop: Crop,
+    records: Sequence[DefectRecord],
+    full: Sequence[int] = (),
+) -> ViewerScene:
+    """Write `surface.glb` and `scene.json`.
+
+    Args:
+        folder: existing.
+        mesh: supported surface in the pictures' colours, with `support` and, where blades are known, `blade`.
+        views: registered views of the model.
+        crop: part of the source frames that was used.
+        records: defects of the model; their faces are of `mesh`.
+        full: frames whose pictures lie beside the surface, at the source's size.
+    """
+    turned = oriented(mesh, views)
+    parts = viewer_parts(turned, {record.id: record.faces for record in records})
+    write_quantized_glb(folder / SURFACE_GLB, parts)
+    nodes = tuple(record.id for record in records if len(record.faces))
+    faces = sum(len(part.faces) for part in parts.values())
+    surface = SurfaceFacts(faces, len(mesh.faces), _spacing(mesh))
+    scene = ViewerScene(camera_of(views, crop), poses_of(views), up_of(views), surface, nodes, tuple(full))
+    scene.write(folder)
+    return scene
+
+
+def with_blades(mesh: Mesh, colored: Mesh) -> Mesh:
+    """The mesh with the blades of `colored`, which has the same vertices, where these are known."""
+    blade = colored.extra.get("blade")
+    return mesh if blade is None else replace(mesh, extra={**mesh.extra, "blade": blade})
+
+
+def _spacing(mesh: Mesh) -> float:
+    """Typical distance of a vertex to the next: those of a Poisson mesh lie about as far apart as its points."""
+    step = max(1, len(mesh.vertices) // _SPACING_SAMPLE)
+    return float(point_spacing(mesh.vertices[::step]) / np.sqrt(step))
+
+
+def camera_of(views: Views, crop: Crop) -> JsonObject:
+    """The lens for pixels of the whole source frame: that of the exported part, with its principal point moved."""
+    params = [float(value) for value in views.camera.params]
+    for at, shift in zip(views.camera.principal_point_idxs(), (crop.x0, crop.y0), strict=True):
+        params[at] += shift
+    return {
+        "model": views.camera.model.name,
+        "width": crop.source_width,
+        "height": crop.source_height,
+        "params": params,
+        "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
+    }
+
+
+def poses_of(views: Views) -> dict[int, list[float]]:
+    """cam_from_world of every registered frame by its index, row by row."""
+    matrices = np.concatenate([views.R, views.t[:, :, None]], axis=2).reshape(-1, 12)
+    return {int(index): matrix.tolist() for index, matrix in zip(views.frame_index, matrices, strict=True)}
+
+
+def up_of(views: Views) -> list[float] | None:
+    """Unit direction in the world that is up in the pictures, on average; None when that is none."""
+    if not len(views):
+        return None
+    mean: F64 = -views.R[:, 1, :].mean(axis=0)
+    length = float(np.linalg.norm(mean))
+    return (mean / length).tolist() if length > 1e-6 else None

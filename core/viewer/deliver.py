@@ -1,0 +1,63 @@
+"""The files of a page, written into the folder where its surface and pictures lie: the page itself and its data."""
+
+from __future__ import annotations
+
+import base64
+import json
+from importlib import resources
+from pathlib import Path
+
+from core.json_files import write_json
+from core.viewer.document import ViewerSource, viewer_document
+
+DOCUMENT = "viewer.json"
+DATA = "data.js"
+_BUNDLE = "bundle"
+
+POLICY = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self' 'unsafe-inline'",
+        "img-src 'self' data: blob:",
+        "connect-src 'self'",
+        "worker-src blob:",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+"""Content security policy of the page wherever a server sends it: it runs its own scripts and asks nobody else."""
+
+
+def bundle() -> dict[str, bytes]:
+    """The built page: bytes by file name, sorted."""
+    files = (resources.files("core.viewer") / _BUNDLE).iterdir()
+    return {file.name: file.read_bytes() for file in sorted(files, key=lambda file: file.name) if file.is_file()}
+
+
+def write_page(folder: Path, source: ViewerSource, surface: Path | None) -> list[str]:
+    """Write the page, its document and the same as a script; gives the names of the files.
+
+    Browsers let a page that was opened as a file read no other file, but they run a script beside it: so the document
+    and the surface are in `data.js` too.
+
+    Args:
+        folder: made when it is not there.
+        source: what it shows.
+        surface: the GLB of its surface; None without one.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    document = viewer_document(source)
+    write_json(folder / DOCUMENT, document)
+    shown = surface if document["surface"] is not None else None
+    encoded = None if shown is None else base64.b64encode(shown.read_bytes()).decode("ascii")
+    # Compact; and no text of the annotations can end a script that it may be pasted into.
+    viewer = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    mesh = "null" if encoded is None else f'"{encoded}"'
+    script = f"window.BLADEATLAS = {{viewer: {viewer}, surface: {mesh}}};\n"
+    (folder / DATA).write_text(script, encoding="ascii", newline="\n")
+    files = bundle()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    return [*files, DOCUMENT, DATA]

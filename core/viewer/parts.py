@@ -1,0 +1,101 @@
+"""The surface of the page: every defect a part of its own at full resolution, the rest with fewer triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import open3d as o3d
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.surface.glb import vertex_normals
+from core.surface.ply import Mesh
+
+MAX_FACES = 240_000
+"""Triangles of all parts together, at most. With 12 bytes of indices, and 24 to 28 of attributes for every second
+triangle, such a file has 5.8 to 6.3 MB; design and page allow 300,000 triangles and 7 MB."""
+PATCH_SHARE = 0.5
+"""Share of them that the defects may have together; larger ones lose triangles as well."""
+_BOUNDARY = 100.0
+"""Weight of the rims in the decimation (Open3D's default is 1): the cut around a defect has to stay where it is."""
+
+Flags = NDArray[np.bool_]
+
+
+def part_name(defect: int) -> str:
+    """Name of the node of a defect."""
+    return f"defect_{defect}"
+
+
+SURFACE = "surface"
+"""Name of the node of everything else."""
+
+
+def viewer_parts(mesh: Mesh, defects: Mapping[int, Sequence[int]], max_faces: int = MAX_FACES) -> dict[str, Mesh]:
+    """Cut the defects out of a surface and thin out the rest.
+
+    Args:
+        mesh: the surface, its faces turned towards the cameras.
+        defects: faces of every defect by its number; a face of two belongs to the smaller number.
+        max_faces: triangles of all parts together, at most.
+
+    Returns:
+        Parts by the names of their nodes, `SURFACE` first; each has normals, and the colours and properties of the
+        mesh. A defect without faces of its own has no part.
+    """
+    whole = replace(mesh, normals=vertex_normals(mesh))
+    owner = np.full(len(mesh.faces), -1, np.int64)
+    for number in sorted(defects, reverse=True):
+        owner[np.asarray(defects[number], np.int64)] = number
+    patches = {number: _cut(whole, owner == number) for number in sorted(defects) if (owner == number).any()}
+    patches = _within(patches, int(PATCH_SHARE * max_faces))
+    left = max_faces - sum(len(patch.faces) for patch in patches.values())
+    rest = _decimated(_cut(whole, owner < 0), left)
+    return {SURFACE: rest, **{part_name(number): patch for number, patch in patches.items()}}
+
+
+def _within(patches: Mapping[int, Mesh], budget: int) -> dict[int, Mesh]:
+    """The defects with at most so many faces together: none loses any while they fit."""
+    total = sum(len(patch.faces) for patch in patches.values())
+    if total <= budget:
+        return dict(patches)
+    return {number: _decimated(patch, len(patch.faces) * budget // total) for number, patch in patches.items()}
+
+
+def _cut(mesh: Mesh, faces: Flags) -> Mesh:
+    """Some faces of a mesh with the vertices that they use."""
+    chosen = mesh.faces[faces]
+    used, flat = np.unique(chosen, return_inverse=True)
+    return _rows(mesh, used, flat.reshape(-1, 3).astype(np.int32))
+
+
+def _rows(mesh: Mesh, rows: NDArray[np.signedinteger], faces: NDArray[np.int32]) -> Mesh:
+    return Mesh(
+        mesh.vertices[rows],
+        faces,
+        None if mesh.colors is None else mesh.colors[rows],
+        None if mesh.normals is None else mesh.normals[rows],
+        {name: values[rows] for name, values in mesh.extra.items()},
+    )
+
+
+def _decimated(mesh: Mesh, max_faces: int) -> Mesh:
+    """At most so many faces, by collapsing edges in the order of their quadric error (Garland and Heckbert 1997).
+
+    A new vertex has the colour and the properties of the old one that is nearest to it.
+    """
+    if len(mesh.faces) <= max_faces:
+        return mesh
+    open3d: Any = o3d  # its stubs lack these parts of it
+    full = open3d.geometry.TriangleMesh(
+        open3d.utility.Vector3dVector(mesh.vertices), open3d.utility.Vector3iVector(mesh.faces)
+    )
+    thin = full.simplify_quadric_decimation(max_faces, boundary_weight=_BOUNDARY)
+    vertices, faces = np.asarray(thin.vertices), np.asarray(thin.triangles, np.int32)
+    _, nearest = cKDTree(mesh.vertices, balanced_tree=False, compact_nodes=False).query(vertices)
+    likened = _rows(mesh, np.asarray(nearest, np.int64), faces)
+    moved = replace(likened, vertices=vertices)
+    return replace(moved, normals=vertex_normals(moved))

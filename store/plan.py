@@ -71,7 +71,7 @@ class Plan:
             unheard_s: only what was not announced by message, or longer ago than this, in seconds.
         """
         with self.db.read() as session:
-            which = [Task.queue.in_(queues)]
+            which: list[ColumnElement[bool]] = [Task.queue.in_(queues)]
             if unheard_s is not None:
                 which.append(unheard(self.db.now(session), unheard_s))
             query = inspections_in_turn(select(Task.id).where(*_runnable(Inspection.id), *which).exists())

@@ -30,7 +30,7 @@ def inspections_in_turn(*where: ColumnElement[bool]) -> Select[str]:
     )
 
 
-def tasks_in_turn(announced: ColumnElement[bool], *where: ColumnElement[bool]) -> Select[tuple[Task]]:
+def tasks_in_turn(announced: ColumnElement[bool], *where: ColumnElement[bool]) -> Select[Task]:
     """Runnable tasks that fulfil `where`, in the order in which they get their turns, one after the other.
 
     It is the order in which a single runner would lease them if none ended meanwhile: every task that an account gets

@@ -123,7 +123,7 @@ class TaskQueue:
             pool="threads",
             concurrency=workers,
             queues=[self._queues[Queue(name)].name for name in queues],
-            hostname=name,
+            hostname=f"bladeatlas@{name}",
             quiet=True,
             without_gossip=True,
             without_mingle=True,
@@ -142,13 +142,14 @@ class TaskQueue:
     def _register(self, stage: str, run: Run, tell_ignored: Callable[[str], None]) -> None:
         """Let messages name a stage."""
 
-        @self._app.task(name=_PREFIX + stage, bind=True, throws=(JobFailed,))
         def job(celery_task: Any, inspection_id: str, part: str = "", piece: int = 0) -> str:
             ending = run(inspection_id, key_of(stage, piece, part))
             if ending is None or ending.outcome == AttemptOutcome.REFUSED:
                 tell_ignored(celery_task.request.id)
                 raise Ignore
             return _as_celery_says(ending)
+
+        self._app.task(job, name=_PREFIX + stage, bind=True, throws=(JobFailed,))
 
 
 def _as_celery_says(ending: Ending) -> str:
@@ -263,7 +264,9 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
             signal.raise_signal(signal.SIGTERM)
 
     thread = threading.Thread(target=keep, name="heartbeat", daemon=True)
-    for part in (thread, service, sender, again, *helpers):
+    thread.start()
+    service.start()
+    for part in (sender, again, *helpers):
         part.start()
     try:
         stages = service.plan.graph.stages

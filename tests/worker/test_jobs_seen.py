@@ -65,7 +65,10 @@ def test_messages_name_their_tasks_come_in_turn_and_again_when_lost(db: Database
     WorkerRegistry(db).seen("worker", ["cpu", "gpu"], 1)
     queue, announcements = TaskQueue(redis_url, 3600), Announcements(db)
     assert queue.announce(announcements) == 2
-    expected = [("bladeatlas.split", ["many 0"], {}), ("bladeatlas.split", ["single"], {})]
+    expected: list[tuple[str, list[str], dict[str, Any]]] = [
+        ("bladeatlas.split", ["many 0"], {}),
+        ("bladeatlas.split", ["single"], {}),
+    ]
     assert waiting(redis) == expected
     redis.flushdb()
     assert queue.announce(announcements) == 0
@@ -120,7 +123,7 @@ def test_monitors_see_each_job_by_name_with_its_worker_and_its_end(broker: str, 
             place.create(name, part__000={"sleep_s": 12}, part__001={"raise": "stage"})
             wait_for(lambda: place.started(name)["part/000"] == 1)
             with db.read() as session:
-                worker = session.query(Worker).one().name
+                worker = f"bladeatlas@{session.query(Worker).one().name}"
             shown: dict[str, Any] = {}
 
             def answers() -> bool:

@@ -24,6 +24,8 @@ RADIAL_COSINE = 0.8
 """A normal nearer than this to the radial direction is that of a hub, a casing or a tip."""
 SLOPES = np.linspace(-2.0, 2.0, 9)
 """Trial slopes of the angle, in pitches over the standard deviation of the place; squared 81 pairs."""
+BINS, SMOOTHED = 60, 4
+"""Of the histogram of phases, and bins to each side that smooth it."""
 LEAST_SHARE = 0.02
 """Of the points on blades: what has fewer is no blade that was seen."""
 LEAST_POINTS = 12
@@ -73,20 +75,30 @@ def fit_sheet(sample: SurfaceSample, row: Hypothesis) -> Sheet:
     spread = np.maximum(terms.std(axis=0), 1e-12)
     scaled = terms / spread
     phase = angle / row.pitch_rad
+    # One side of the blades alone: with both, a blade's back may be laid onto its neighbour's front.
+    facing = (row.axis.tangential(on_blade.points) * on_blade.normals).sum(axis=1)
+    one_side = facing > 0 if (facing > 0).mean() >= 0.5 else facing < 0
 
     def off(lean: F64) -> float:
-        return -float(np.abs(np.exp(2j * np.pi * (phase - scaled @ lean)).mean()))
+        return -float(np.abs(np.exp(2j * np.pi * (phase[one_side] - scaled[one_side] @ lean)).mean()))
 
     trials = [np.array([a, b, 0.0, 0.0, 0.0]) for a in SLOPES for b in SLOPES]
     first = min(trials, key=off)
     simplex = np.vstack([first, first + np.diag([0.2, 0.2, 0.1, 0.1, 0.1])])
     found = minimize(off, first, method="Nelder-Mead", options={"maxfev": 400, "initial_simplex": simplex})
     lean = np.asarray(found.x, np.float64)
-    mean = np.exp(2j * np.pi * (phase - scaled @ lean)).mean()
     cut = float(np.angle(np.exp(1j * angle).mean()))
-    start = float(np.angle(mean)) / (2 * np.pi) * row.pitch_rad
+    start = (_emptiest(phase - scaled @ lean) + 0.5) * row.pitch_rad
     start += round((cut - start) / row.pitch_rad) * row.pitch_rad
     return Sheet(row.axis, row.pitch_rad, lean / spread * row.pitch_rad, middle, start, cut)
+
+
+def _emptiest(phase: F64) -> float:
+    """The fractional part that the fewest phases are near: between blades, whose two sides fill most of a pitch."""
+    counts, edges = np.histogram(phase % 1.0, bins=BINS, range=(0.0, 1.0))
+    wide = np.convolve(np.concatenate([counts[-SMOOTHED:], counts, counts[:SMOOTHED]]), np.hanning(2 * SMOOTHED + 3)[1:-1])
+    smooth = wide[2 * SMOOTHED : 2 * SMOOTHED + BINS]
+    return float(edges[int(smooth.argmin())]) + 0.5 / BINS
 
 
 def seen_blades(sheet: Sheet, sample: SurfaceSample) -> I64:

@@ -15,7 +15,7 @@ EVALUATIONS = 120
 """Of the contrast, per seed."""
 TURNS = (1, 2, 3)
 """Pitches after which the surface is fitted to itself, all at once: radius and pitch trade in one alone."""
-GAUSS_NEWTON_STEPS = 20
+GAUSS_NEWTON_STEPS = 60
 NUDGE = 1e-5
 FIRST_STEPS = (0.05, 0.05, 0.05, 0.05, 0.04)
 """Edges of the first simplex: rad, rad, shares of the radius, share of the pitch."""
@@ -58,7 +58,7 @@ def refined(sample: SurfaceSample, row: Hypothesis) -> Hypothesis:
         steps = -np.linalg.solve(normal_matrix + np.diag(1e-6 * scale + 1e-12 * scale.max()), right)
         steps = np.clip(steps, -0.05, 0.05)
         row = _moved(row, steps, length)
-        if np.abs(steps).max() < 1e-6:
+        if np.abs(steps).max() < 1e-5:
             break
     return row
 

@@ -6,6 +6,7 @@ blades, and is found by the concentration of the angles left over (the mean resu
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,8 @@ SLOPES = np.linspace(-2.0, 2.0, 9)
 """Trial slopes of the angle, in pitches over the standard deviation of the place; squared 81 pairs."""
 BINS, SMOOTHED = 60, 4
 """Of the histogram of phases, and bins to each side that smooth it."""
+STARTS, EVALUATIONS = 8, 600
+"""Trial slopes that the lean is sought from, and evaluations from each: several optima are local ones."""
 LEAST_SHARE = 0.02
 """Of the points on blades: what has fewer is no blade that was seen."""
 LEAST_POINTS = 12
@@ -83,14 +86,18 @@ def fit_sheet(sample: SurfaceSample, row: Hypothesis) -> Sheet:
         return -float(np.abs(np.exp(2j * np.pi * (phase[one_side] - scaled[one_side] @ lean)).mean()))
 
     trials = [np.array([a, b, 0.0, 0.0, 0.0]) for a in SLOPES for b in SLOPES]
-    first = min(trials, key=off)
-    simplex = np.vstack([first, first + np.diag([0.2, 0.2, 0.1, 0.1, 0.1])])
-    found = minimize(off, first, method="Nelder-Mead", options={"maxfev": 400, "initial_simplex": simplex})
-    lean = np.asarray(found.x, np.float64)
+    lean = min((_descended(off, first) for first in sorted(trials, key=off)[:STARTS]), key=off)
     cut = float(np.angle(np.exp(1j * angle).mean()))
     start = (_emptiest(phase - scaled @ lean) + 0.5) * row.pitch_rad
     start += round((cut - start) / row.pitch_rad) * row.pitch_rad
     return Sheet(row.axis, row.pitch_rad, lean / spread * row.pitch_rad, middle, start, cut)
+
+
+def _descended(off: Callable[[F64], float], first: F64) -> F64:
+    """The best lean near a first one (Nelder and Mead 1965)."""
+    simplex = np.vstack([first, first + np.diag([0.2, 0.2, 0.1, 0.1, 0.1])])
+    found = minimize(off, first, method="Nelder-Mead", options={"maxfev": EVALUATIONS, "initial_simplex": simplex})
+    return np.asarray(found.x, np.float64)
 
 
 def _emptiest(phase: F64) -> float:

@@ -22,6 +22,8 @@ SEARCH_POINTS = 1500
 FIT_POINTS = 10_000
 MIN_CONTRAST = 0.15
 """True surfaces of one blade and of a hub have 0.00; a noisy draft surface seen from one side has 0.20."""
+WORTH_FITTING = MIN_CONTRAST / 4
+"""Contrast on the coarse points, which show less of it, that a hypothesis needs to be fitted to more of them."""
 MIN_SHARE_KEPT = 0.5
 """Contrast over the mean overlap after one and two pitches: half of the overlap must vanish between blades."""
 MIN_SECOND = 0.05
@@ -59,6 +61,7 @@ def estimate_row(mesh: Mesh, views: Views, seed: int, count: int | None = None) 
     found = find_row(coarse, fine, views.R, views.t)
     if found is None:
         return NoRow(UnknownRow.NO_REPETITION)
+    found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
     if count is not None:
         found = Hypothesis(found.axis, 2 * np.pi / count)
     refusal = refused(fine, found)
@@ -71,7 +74,9 @@ def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, transla
     """The row of best contrast on the fine sample; None where no motion between views looks like a turn."""
     found = []
     for first in seeds(coarse, rotations, translations):
-        _, row = best_contrast(coarse, first)
+        value, row = best_contrast(coarse, first)
+        if value < WORTH_FITTING:
+            continue
         row = refined(fine, row)
         found.append((contrast(fine, row), row))
     return max(found, key=lambda item: item[0])[1] if found else None
@@ -131,7 +136,6 @@ def _described(
     on_blade = coarse.of(~radial(row.axis, coarse.points, coarse.normals))
     seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
     numbers = in_order(seen, index, blades)
-    ordered = sorted(numbers, key=lambda one: numbers[one])
     spread = _deviations(sheet, fine, blades)
     sigma = row.pitch_rad * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
     _, radius, _ = row.axis.cylinder(fine.points[~radial(row.axis, fine.points, fine.normals)])
@@ -141,8 +145,7 @@ def _described(
     most = int(np.floor(2 * np.pi / (row.pitch_rad - 2 * sigma) + 1e-6))
     return BladeRow(
         RowStatus.ESTIMATED if count is None else RowStatus.USER,
-        row.axis.nearest_to(fine.points.mean(axis=0)),
-        row.pitch_rad,
+        sheet,
         sigma,
         (fewest, most),
         contrast(fine, row),
@@ -150,9 +153,6 @@ def _described(
         float(root),
         float(tip),
         fine.spacing,
-        np.array([sheet.start_rad + one * sheet.pitch_rad for one in ordered]),
-        tuple(numbers[one] for one in ordered),
-        sheet.lean,
-        (sheet.middle[0] + float((sheet.axis.foot - row.axis.foot) @ row.axis.direction), sheet.middle[1]),
+        numbers,
         coverage_of(seen, index, numbers),
     )

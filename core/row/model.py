@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.json_files import JsonObject
+from core.row.blades import Sheet
 from core.row.turn import Axis
 
 F64 = NDArray[np.float64]
@@ -78,8 +79,8 @@ class BladeRow:
     """A row of equal blades, in the world frame and unit of its model."""
 
     status: RowStatus
-    axis: Axis
-    pitch_rad: float
+    sheet: Sheet
+    """The angle of the blades as a function of place."""
     pitch_sigma_rad: float
     count: tuple[int, int]
     """Fewest and most blades in the whole row."""
@@ -90,15 +91,25 @@ class BladeRow:
     tip_radius: float
     radius_sigma: float
     """Of both radii."""
-    phases: F64
-    """(n,) angles of the blades seen, rad, in the order of their numbers."""
-    numbers: tuple[int, ...]
-    """Of the blades seen, from 1 in order of first appearance, or as the user counts."""
-    lean: F64
-    """(5,) the angle's change with place: along, out, and their squares and product (`core.row.blades`)."""
-    middle: tuple[float, float]
-    """Height and radius that the lean is counted from."""
+    numbers: Mapping[int, int]
+    """Of the blades seen by their index on the sheet: from 1 in order of first appearance."""
     coverage: tuple[Coverage, ...] = ()
+
+    @property
+    def axis(self) -> Axis:
+        """The axis of the row."""
+        return self.sheet.axis
+
+    @property
+    def pitch_rad(self) -> float:
+        """Angle from blade to blade."""
+        return self.sheet.pitch_rad
+
+    @property
+    def phases(self) -> F64:
+        """(n,) angles of the blades seen where the sheet's lean is zero, rad, in the order of their numbers."""
+        ordered = sorted(self.numbers, key=lambda index: self.numbers[index])
+        return np.array([self.sheet.start_rad + index * self.pitch_rad for index in ordered])
 
     def to_dict(self) -> JsonObject:
         """JSON form."""
@@ -119,7 +130,7 @@ class BladeRow:
             "direction": None,
             "blades": [
                 {"number": number, "angle_deg": round(float(np.degrees(phase)), 4)}
-                for number, phase in zip(self.numbers, self.phases, strict=True)
+                for number, phase in zip(sorted(self.numbers.values()), self.phases, strict=True)
             ],
             "coverage": [
                 {

@@ -145,6 +145,7 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     row = _add(commands, "row", "find the row of blades of a result; write row.json and the column `blade` into it")
     row.add_argument("--set", action="append", default=[], metavar="count=N", help="what is known: blades in the row")
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+    row.add_argument("--json", action="store_true", help="print row.json")
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
         one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")

@@ -1,7 +1,7 @@
 """Blades of a row told apart: the angle of a blade as a function of place, and the blades that are seen.
 
-In cylinder coordinates about the axis a blade is a sheet ``theta = g(z, r) + k p``: g is a quadratic function, one for all
-blades, and is found by the concentration of the angles left over (the mean resultant length of circular statistics).
+In cylinder coordinates about the axis a blade is a sheet ``theta = g(z, r) + k p``: g is a quadratic function, one for
+all blades, found by the concentration of the angles left over (the mean resultant length of circular statistics).
 """
 
 from __future__ import annotations
@@ -103,7 +103,9 @@ def _descended(off: Callable[[F64], float], first: F64) -> F64:
 def _emptiest(phase: F64) -> float:
     """The fractional part that the fewest phases are near: between blades, whose two sides fill most of a pitch."""
     counts, edges = np.histogram(phase % 1.0, bins=BINS, range=(0.0, 1.0))
-    wide = np.convolve(np.concatenate([counts[-SMOOTHED:], counts, counts[:SMOOTHED]]), np.hanning(2 * SMOOTHED + 3)[1:-1])
+    wide = np.convolve(
+        np.concatenate([counts[-SMOOTHED:], counts, counts[:SMOOTHED]]), np.hanning(2 * SMOOTHED + 3)[1:-1]
+    )
     smooth = wide[2 * SMOOTHED : 2 * SMOOTHED + BINS]
     return float(edges[int(smooth.argmin())]) + 0.5 / BINS
 

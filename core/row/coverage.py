@@ -24,7 +24,7 @@ def sightings(sample: SurfaceSample, views: Views, surface: Surface) -> NDArray[
     centers = views.centers
     way = centers[None] - sample.points[:, None]
     way /= np.maximum(np.linalg.norm(way, axis=2, keepdims=True), 1e-300)
-    seen = inside & ((way * sample.normals[:, None]).sum(axis=2) > USABLE_COSINE)
+    seen: NDArray[np.bool_] = inside & ((way * sample.normals[:, None]).sum(axis=2) > USABLE_COSINE)
     point, view = np.nonzero(seen)
     seen[point, view] = surface.clear(centers[view], sample.points[point], 2.0 * sample.spacing)
     return seen

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -111,12 +113,12 @@ def _deviations(sheet: Sheet, sample: SurfaceSample, blades: NDArray[np.int64]) 
     position = sheet.position(on_blade.points)
     index = np.round(position).astype(np.int64)
     steps = []
-    for one, other in zip(blades[:-1], blades[1:], strict=True):
+    for one, other in pairwise(blades):
         angle = float(other - one) * sheet.pitch_rad
         here, there = on_blade.of(index == one), on_blade.of(index == other)
         moved = sheet.axis.turned(here.points, angle)
-        away, rows = there.tree.query(moved)
-        near = away < 4.0 * sample.spacing
+        found = there.tree.query(moved)
+        rows, near = np.asarray(found[1]), np.asarray(found[0]) < 4.0 * sample.spacing
         if near.sum() < 10:
             continue
         gap = moved[near] - there.points[rows[near]]

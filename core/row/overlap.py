@@ -1,7 +1,7 @@
 """How well a surface fits itself after a turn: the measure that a row of blades is found by.
 
 Regular structures show as turns under which a shape maps onto itself (Mitra, Guibas and Pauly, SIGGRAPH 2006; Pauly et
-al., SIGGRAPH 2008). The overlap alone is largest for no turn at all, so the pitch is the turn with the best **contrast**:
+al., SIGGRAPH 2008). The overlap alone is largest for no turn at all, so the pitch is the turn with the best contrast:
 overlap after one and two pitches, less that half way between blades. A surface of revolution, such as a hub, overlaps
 after every turn alike and has none.
 """
@@ -56,12 +56,12 @@ class Partners:
 
 def partners(points: F64, normals: F64, sample: SurfaceSample) -> Partners:
     """Nearest points of a sample to (n, 3) points with (n, 3) unit normals."""
-    _, rows = sample.tree.query(points)
+    rows = np.asarray(sample.tree.query(points)[1], np.int64)
     away = points - sample.points[rows]
     across = (away * sample.normals[rows]).sum(axis=1)
     along = np.sqrt(np.maximum((away**2).sum(axis=1) - across**2, 0.0))
     facing = (normals * sample.normals[rows]).sum(axis=1) > MIN_COSINE
-    return Partners(rows.astype(np.int64), across, facing & (along < REACH_SPACINGS * sample.spacing))
+    return Partners(rows, across, facing & (along < REACH_SPACINGS * sample.spacing))
 
 
 def overlap(sample: SurfaceSample, axis: Axis, angles_rad: Sequence[float], kernel: float) -> F64:

@@ -42,7 +42,8 @@ class SurfaceSample:
         """Median distance of a point to its fourth neighbour, scene units; 0 for five points or fewer."""
         if len(self.points) <= NEIGHBOUR + 1:
             return 0.0
-        return float(np.median(self.tree.query(self.points, k=NEIGHBOUR + 1)[0][:, NEIGHBOUR]))
+        away = np.asarray(self.tree.query(self.points, k=NEIGHBOUR + 1)[0])
+        return float(np.median(away[:, NEIGHBOUR]))
 
     def __len__(self) -> int:
         return len(self.points)

@@ -19,7 +19,13 @@ LEAST_VIEWS = (2, 3, 5)
 
 
 def sightings(sample: SurfaceSample, views: Views, surface: Surface) -> NDArray[np.bool_]:
-    """(n, f) whether a view has a point in its picture, at a usable angle and with nothing before it."""
+    """(n, f) whether a view has a point in its picture, at a usable angle and with nothing before it.
+
+    Args:
+        sample: with normals towards the cameras.
+        views: of the model.
+        surface: what may hide a point; one that lies within two spacings before it is its own.
+    """
     _, inside = views.project(sample.points)
     centers = views.centers
     way = centers[None] - sample.points[:, None]

@@ -9,11 +9,10 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from core.errors import BadInput
 from core.io.sparse import open_model
-from core.json_files import write_json
+from core.json_files import JsonObject, write_json
 from core.mapping.scene import oriented
 from core.outputs import DEFECTS, SPARSE, SUMMARY, SURFACE
 from core.report.tables import write_csv
@@ -24,10 +23,10 @@ from core.scene.views import views_of
 from core.surface.ply import read_mesh
 
 ROW = "row.json"
-DETECTIONS = "mapping/detections"
+DETECTIONS_JSON, DETECTIONS_CSV = "mapping/detections.json", "mapping/detections.csv"
 SEED = 0
 
-Rows = list[dict[str, Any]]
+Rows = list[JsonObject]
 """Objects of a published JSON table; older releases have fewer members, and those that are not known stay."""
 
 
@@ -49,7 +48,7 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
     if not (folder / SUMMARY).is_file():
         raise BadInput(f"{folder.name} is no result: it has no {SUMMARY}", where=str(folder))
     found = {number: row_of(own, count) for number, own in _models(folder).items()}
-    detections = _read(folder / f"{DETECTIONS}.json")
+    detections = _read(folder / DETECTIONS_JSON)
     for one in detections:
         one["blade"] = _blade(found, one.get("model"), (one["x"], one["y"], one["z"]))
     records = _read(folder / DEFECTS)
@@ -63,8 +62,8 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
             record["blade"] = blade_name(place.blade, model)
             findings[model].append({"defect": record["id"], **place.to_dict()})
     if detections:
-        _replace(folder / f"{DETECTIONS}.json", lambda path: write_json(path, detections))
-        _replace(folder / f"{DETECTIONS}.csv", lambda path: write_csv(path, list(detections[0]), detections))
+        _replace(folder / DETECTIONS_JSON, lambda path: write_json(path, detections))
+        _replace(folder / DETECTIONS_CSV, lambda path: write_csv(path, list(detections[0]), detections))
     if records:
         _replace(folder / DEFECTS, lambda path: write_json(path, records))
     for number, own in sorted(_models(folder).items(), reverse=True):
@@ -88,7 +87,7 @@ def blade_name(number: int | None, model: int) -> str | None:
     return f"{model}-B{number}" if model else str(number)
 
 
-def _blade(found: Mapping[int, BladeRow | NoRow], model: Any, place: Sequence[float | None]) -> str | None:
+def _blade(found: Mapping[int, BladeRow | NoRow], model: int | None, place: Sequence[float | None]) -> str | None:
     known = [float(value) for value in place if value is not None]
     row = found.get(int(model or 0))
     if len(known) < 3 or not isinstance(row, BladeRow):

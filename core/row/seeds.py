@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from core.geometry.pose import transform
 from core.row.overlap import Hypothesis, contrast, partners
 from core.row.sample import SurfaceSample
 from core.row.turn import screw_of
@@ -63,7 +64,7 @@ def _fitted(sample: SurfaceSample, rotation: F64, translation: F64) -> tuple[F64
     middle = sample.points.mean(axis=0)
     widths = np.geomspace(4.0, 0.5, STEPS) * sample.spacing
     for width in widths:
-        moved = sample.points @ rotation.T + translation
+        moved = transform(sample.points, rotation, translation)
         found = partners(moved, sample.normals @ rotation.T, sample)
         use = np.flatnonzero(found.fits & (np.abs(found.across) < 6.0 * width))
         if len(use) < 30:

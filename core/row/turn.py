@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from core.geometry.pose import transform
+
 F64 = NDArray[np.float64]
 
 
@@ -35,8 +37,7 @@ class Axis:
 
     def turned(self, points: F64, angle_rad: float) -> F64:
         """(n, 3) points turned about the axis."""
-        turned: F64 = (points - self.foot) @ self.matrix(angle_rad).T + self.foot
-        return turned
+        return transform(points - self.foot, self.matrix(angle_rad), self.foot)
 
     def cylinder(self, points: F64) -> tuple[F64, F64, F64]:
         """Angle in (-pi, pi], radius and height along the axis of (n, 3) points."""

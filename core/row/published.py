@@ -23,7 +23,7 @@ from core.scene.views import views_of
 from core.surface.ply import read_mesh
 
 ROW = "row.json"
-DETECTIONS_JSON, DETECTIONS_CSV = "mapping/detections.json", "mapping/detections.csv"
+DETECTIONS = "mapping/detections"
 SEED = 0
 
 Rows = list[JsonObject]
@@ -48,7 +48,7 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
     if not (folder / SUMMARY).is_file():
         raise BadInput(f"{folder.name} is no result: it has no {SUMMARY}", where=str(folder))
     found = {number: row_of(own, count) for number, own in _models(folder).items()}
-    detections = _read(folder / DETECTIONS_JSON)
+    detections = _read((folder / DETECTIONS).with_suffix(".json"))
     for one in detections:
         one["blade"] = _blade(found, one.get("model"), (one["x"], one["y"], one["z"]))
     records = _read(folder / DEFECTS)
@@ -62,8 +62,10 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
             record["blade"] = blade_name(place.blade, model)
             findings[model].append({"defect": record["id"], **place.to_dict()})
     if detections:
-        _replace(folder / DETECTIONS_JSON, lambda path: write_json(path, detections))
-        _replace(folder / DETECTIONS_CSV, lambda path: write_csv(path, list(detections[0]), detections))
+        _replace((folder / DETECTIONS).with_suffix(".json"), lambda path: write_json(path, detections))
+        _replace(
+            (folder / DETECTIONS).with_suffix(".csv"), lambda path: write_csv(path, list(detections[0]), detections)
+        )
     if records:
         _replace(folder / DEFECTS, lambda path: write_json(path, records))
     for number, own in sorted(_models(folder).items(), reverse=True):

@@ -36,7 +36,8 @@ def blade_of(vertex: np.ndarray) -> np.ndarray:
 
 def turned(points: np.ndarray, angle_rad: float) -> np.ndarray:
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
-    return points @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]).T
+    turned_points: np.ndarray = points @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]).T
+    return turned_points
 
 
 def walk(count: int, turn_pitches: float = 3.0, away: float = 60.0) -> Views:

@@ -18,8 +18,8 @@ TRUE_AXIS = Axis(np.array([0.0, 0.0, 1.0]), np.zeros(3))
 PITCH_WITHIN = 0.005
 AXIS_WITHIN_DEG = 0.5
 FOOT_WITHIN_MM = 1.5
-VIEWS = 9
-FEW_VIEWS = 5
+VIEWS = 6
+FEW_VIEWS = 4
 
 
 @pytest.fixture(scope="module")

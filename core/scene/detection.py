@@ -163,7 +163,7 @@ class DetectionRow:
     confidence: float | None
     """Probability that the detection is real and its place right."""
     blade: str | None
-    """Blade that it lies on; always empty."""
+    """Blade that it lies on, once `bladeatlas row` found the row."""
     defect_id: int | None
     """Record of defects.json that it belongs to."""
     model: int | None

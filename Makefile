@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-real bench-service soak mutate versions lock clean
+.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-real bench-inputs bench-service soak mutate versions lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -52,6 +52,9 @@ bench-scenes: setup ## render, run and score the suite of scenes (an hour and a 
 
 bench-real: setup ## run real clips beside COLMAP, from the checkouts in SOURCES (docs/experiments/real-footage.md), in out/real
 	$(BIN)/bladeatlas-bench real out/real $(if $(SOURCES),--sources $(SOURCES)) $(REAL)
+
+bench-inputs: setup ## memory and time of a probe of an hour of 1080p, in out/inputs
+	$(BIN)/bladeatlas-bench inputs out/inputs
 
 bench-service: setup ## time uploads, downloads, many clients and the queue
 	$(BIN)/bladeatlas-bench service $(SERVICE)

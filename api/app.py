@@ -9,6 +9,7 @@ from prometheus_client import CollectorRegistry
 
 from api import openapi, problems
 from api.auditing import Auditor
+from api.events import EventFeed
 from api.middleware import RequestMetrics, RequestMiddleware, known_query
 from api.probing import Prober
 from api.resource import Resources
@@ -17,6 +18,7 @@ from api.routes import (
     actions,
     artifacts,
     audit,
+    events,
     frames,
     health,
     inspections,
@@ -37,6 +39,7 @@ from api.watching import Watcher
 from core.errors import BadInput
 from core.versions import program_version
 from store.audit import AuditLog
+from store.events import Events
 from store.keys import KeyRing, Keys
 from store.request_rate import RequestRate
 from store.settings import deployment_settings
@@ -44,7 +47,7 @@ from store.web_sessions import WebSessions
 
 _ROUTERS = (
     *(health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, viewer, frames),
-    *(session, keys, accounts, audit),
+    *(session, keys, accounts, audit, events),
 )
 
 
@@ -103,4 +106,5 @@ def _state(services: Services) -> State:
         registry=registry,
         rate=RequestRate(services.db, services.settings),
         sessions=WebSessions(services.db),
+        feed=EventFeed(Events(services.db).last, services.settings),
     )

@@ -17,7 +17,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.auditing import Auditor
 from api.auth import BEARER, caller
+from api.parameters import METADATA
 from api.problems import FieldError, Refused, pointer
+from core.metadata import is_metadata_name
 from core.names import unknown_name
 
 _USABLE = re.compile(r"[A-Za-z0-9._-]{1,64}")
@@ -112,7 +114,7 @@ async def known_query(request: Request) -> None:
     route = request.scope["route"]
     assert isinstance(route, APIRoute)  # only these have dependencies
     known, needs_caller = _declared(route)
-    unknown = [name for name in request.query_params if name not in known]
+    unknown = [name for name in request.query_params if name not in known and not _is_metadata(name, known)]
     if not unknown:
         return
     if needs_caller:  # who may not ask at all is told that first
@@ -123,6 +125,13 @@ async def known_query(request: Request) -> None:
     where = f"query.{unknown[0][:_SHOWN]}"
     status = HTTPStatus.UNPROCESSABLE_ENTITY
     raise Refused(status, "unknown_parameter", errors[0].detail, where=where, errors=errors)
+
+
+def _is_metadata(name: str, known: tuple[str, ...]) -> bool:
+    """True for ``metadata.NAME`` where the route takes such filters: beside the declared ones any name may be asked."""
+    if not name.startswith(METADATA) or not any(each.startswith(METADATA) for each in known):
+        return False
+    return is_metadata_name(name.removeprefix(METADATA))
 
 
 def _words(name: str, known: tuple[str, ...]) -> str:

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from api.problems import Refused
+from core.metadata import NAME_PATTERN, is_metadata_name
 
 Seconds = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
 """A time in the video."""
@@ -28,6 +29,18 @@ def _without_nul(text: str) -> str:
 
 Text = Annotated[str, Field(max_length=256), AfterValidator(_without_nul)]
 """A text to compare with a column."""
+
+
+def _metadata_name(name: str) -> str:
+    if not is_metadata_name(name):
+        raise ValueError("must be small letters, digits and _, beginning with a letter")
+    return name
+
+
+METADATA = "metadata."
+"""Begins the name of a query parameter that chooses by metadata."""
+MetadataName = Annotated[str, Field(max_length=64, pattern=NAME_PATTERN), AfterValidator(_metadata_name)]
+"""Name of an entry of an inspection's metadata."""
 
 
 def moment(value: datetime | None, name: str) -> datetime | None:

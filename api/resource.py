@@ -19,7 +19,7 @@ from core.flags import Severity
 from core.outputs import VIEWER_PAGE
 from core.states import InspectionState
 from core.versions import all_versions
-from store.leasing import input_files
+from store.leasing import input_files, metadata_of
 from store.models import LEASABLE, Inspection
 from store.publishing import ArtifactRows
 from store.status import PUBLISH, InspectionStatus, StageStatus, Statuses
@@ -44,6 +44,7 @@ _LINKS = (
     "detections",
     "timeline",
     "defects",
+    "events",
     "logs",
     "artifacts",
     "archive.zip",
@@ -98,6 +99,7 @@ class Resources:
                 "label": row.label,
                 "external_id": row.external_id,
                 "priority": row.priority,
+                "metadata": metadata_of(row),
                 "parameters": row.parameters or {},
                 "created_at": row.created_at,
                 "started_at": row.started_at,

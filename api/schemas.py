@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from api.parameters import OneOf, Text
+from api.parameters import MetadataName, OneOf, Text
+from core.metadata import KNOWN_METADATA, MAX_ENTRIES
 from core.settings import PRESET_NAMES
 from core.states import InspectionState, StageState
 
@@ -44,6 +45,7 @@ EXAMPLE: dict[str, Any] = {
     "label": "engine 4, stage 2",
     "external_id": "WO-1187",
     "priority": 0,
+    "metadata": {"engine_serial": "V12345", "module": "HPT"},
     "parameters": {"preset": "draft", "options": {"matching.window": 8}},
     "created_at": "2026-05-04T09:30:02Z",
     "started_at": "2026-05-04T09:30:03Z",
@@ -137,6 +139,7 @@ class Resource(BaseModel):
     label: str
     external_id: str
     priority: int = Field(description="0 to 9; of the inspections of an account higher ones go first")
+    metadata: dict[str, str] = Field(description="what is known of the engine and the work")
     parameters: dict[str, Any] = Field(description="as they were asked for")
     created_at: datetime
     started_at: datetime | None
@@ -174,4 +177,11 @@ class Parameters(BaseModel):
     external_id: Text = Field("", description="the caller's own name for it; need not be unique")
     priority: int = Field(
         0, ge=0, le=9, description="higher ones of the account go first; at most the account's `max_priority`"
+    )
+    metadata: dict[MetadataName, Text] = Field(
+        {},
+        max_length=MAX_ENTRIES,
+        description="what is known of the engine and the work: "
+        + ", ".join(KNOWN_METADATA)
+        + ", or any other name; an empty text is none",
     )

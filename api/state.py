@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fastapi import Request
 from prometheus_client import CollectorRegistry
 
+from api.events import EventFeed
 from api.probing import Prober
 from api.resource import Resources
 from api.services import Services
@@ -29,6 +30,7 @@ class State:
     registry: CollectorRegistry
     rate: RequestRate
     sessions: WebSessions
+    feed: EventFeed
     digests: Digests = field(default_factory=Digests)
     in_flight: set[tuple[str, str]] = field(default_factory=set)
     """(owner, Idempotency-Key) of requests that are being answered."""

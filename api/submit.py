@@ -73,8 +73,10 @@ class Asked:
     def digest(self) -> str:
         """Name of the request by content, however it was sent."""
         parameters = self.parameters.model_dump(mode="json")
-        if not self.parameters.priority:  # the name that the same request had before there were priorities
+        if not self.parameters.priority:  # the name that the same request had before there were these
             del parameters["priority"]
+        if not self.parameters.metadata:
+            del parameters["metadata"]
         names = self.sent[0].names() if len(self.sent) == 1 else {"videos": [one.names() for one in self.sent]}
         return digest_of({**names, "parameters": parameters})
 
@@ -113,14 +115,14 @@ def settings_of(parameters: Parameters) -> Settings:
         raise Refused(status, "bad_parameters", error.message, where=error.where, errors=errors) from None
 
 
-def require_priority(services: Services, owner: str, priority: int) -> None:
+def require_priority(services: Services, owner: str, priority: int, where: str = "/parameters/priority") -> None:
     """422 for a priority above the highest of the account."""
     if not priority:
         return
     highest = Accounts(services.db).get(owner).max_priority
     if priority > highest:
         detail = f"priority {priority} is above {highest}, the highest of this account"
-        errors = [FieldError(pointer="/parameters/priority", detail=detail)]
+        errors = [FieldError(pointer=where, detail=detail)]
         status = HTTPStatus.UNPROCESSABLE_ENTITY
         raise Refused(status, "bad_parameters", detail, where="priority", errors=errors)
 
@@ -216,6 +218,7 @@ def _create_in(services: Services, asked: Asked, settings: Settings, place: Plac
                 reuse_account=services.reuse_account(asked.owner),
                 label=asked.parameters.label,
                 external_id=asked.parameters.external_id,
+                metadata=asked.parameters.metadata,
                 parameters={"preset": asked.parameters.preset, "options": asked.parameters.options},
             )
     except IntegrityError:

@@ -58,6 +58,8 @@ Detection = _row_model(
         **{"frame_index": 125, "outcome": "mapped", "reason": None, "rung": "sparse", "support_points": 14},
         **{"x": 0.12, "y": -0.4, "z": 2.31},
         **{"confidence": None, "blade": None, "defect_id": 3, "model": 0, "video": 0},
+        **{"length": 0.061, "length_sigma": 0.006, "width": 0.048, "width_sigma": 0.008},
+        **{"area": 0.0022, "area_sigma": 0.0006, "length_unit": "model", "size_from": "box"},
     },
 )
 Event = _row_model(

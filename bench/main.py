@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench import boards, measurements, verdicts
+from bench import boards, inputs, measurements, verdicts
 from bench.mutate import command as mutate
 from bench.real import command as real
 from bench.scenes import command as scenes
@@ -57,6 +57,9 @@ def make_parser() -> argparse.ArgumentParser:
     real_parser = commands.add_parser("real", help="run real clips with known cameras beside COLMAP")
     real.add_arguments(real_parser)
     real_parser.set_defaults(run=real.command)
+    inputs_parser = commands.add_parser("inputs", help="probe an hour of video: memory and time")
+    inputs.add_arguments(inputs_parser)
+    inputs_parser.set_defaults(run=inputs.command)
     boards_parser = commands.add_parser("boards", help="render calibration boards through known lenses and calibrate")
     boards.add_arguments(boards_parser)
     boards_parser.set_defaults(run=boards.command)

@@ -22,7 +22,7 @@ _EXIT_CODES = (
     "exit codes: 0 done, 1 internal error, 2 bad input or parameters, 3 no reconstruction, 4 partial, 130 interrupted"
 )
 _SHARED = {
-    "probe": ("inputs", "probe"),
+    "probe": ("probe", "probe"),
     "check": ("inputs", "check"),
     "point": ("query", "point"),
     "views": ("query", "views"),
@@ -154,6 +154,10 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="FILE",
         help="video of a result that keeps no pictures, of several each in their order: builds the page again",
     )
+    row = _add(commands, "row", "find the row of blades of a result; write row.json and the column `blade` into it")
+    row.add_argument("--set", action="append", default=[], metavar="count=N", help="what is known: blades in the row")
+    row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+    row.add_argument("--json", action="store_true", help="print row.json")
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
         one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")
@@ -172,7 +176,7 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--parameters",
         type=Path,
         metavar="FILE",
-        help="JSON {preset, options {name: value}, label, external_id, priority}",
+        help="JSON {preset, options {name: value}, label, external_id, priority, metadata}",
     )
     run.add_argument(
         "--roi", metavar="full|X0,Y0,X1,Y1", help="region of interest, as shares of the source frame's width and height"

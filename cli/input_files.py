@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from core.annotations.foreign.archive import packed_folder
-from core.calibration.files import read_calibration
 
 OPTION = "input.annotation_format"
 
@@ -33,7 +32,11 @@ def with_format(parsed: argparse.Namespace) -> list[str]:
 
 def calibration_options(path: Path | None) -> dict[str, object]:
     """The options that a calibration file stands for; none without one."""
-    return {} if path is None else read_calibration(path).options()
+    if path is None:
+        return {}
+    from core.calibration.files import read_calibration  # loads SciPy, which few commands need
+
+    return read_calibration(path).options()
 
 
 def add_calibration(command: argparse.ArgumentParser) -> None:

@@ -10,9 +10,10 @@ from typing import Any
 
 from cli.input_files import calibration_options, with_format
 from core.errors import BadInput
+from core.metadata import parse_metadata
 from core.settings import Settings, make_settings
 
-_KEYS = ("preset", "options", "label", "external_id", "priority")
+_KEYS = ("preset", "options", "label", "external_id", "priority", "metadata")
 _HIGHEST_PRIORITY = 9
 _MAX_PARAMETER_BYTES = 1 << 20
 
@@ -27,6 +28,8 @@ class Parameters:
     external_id: str = ""
     priority: int = 0
     """0 to 9; only a server has others to put it before."""
+    metadata: dict[str, str] = field(default_factory=dict)
+    """What is known of the engine and the work; see `core.metadata`."""
 
     def settings(self) -> Settings:
         """The run's settings; `BadInput` names what does not fit."""
@@ -47,11 +50,11 @@ def from_arguments(parsed: argparse.Namespace) -> Parameters:
         options["seed"] = parsed.seed
     options.update(calibration_options(parsed.calibration))
     options.update(parse_assignment(text) for text in with_format(parsed))
-    return Parameters(parsed.preset or base.preset, options, base.label, base.external_id, base.priority)
+    return Parameters(parsed.preset or base.preset, options, base.label, base.external_id, base.priority, base.metadata)
 
 
 def read_parameters(path: Path) -> Parameters:
-    """Read ``{preset, options {dotted: value}, label, external_id, priority}``, all optional; others are refused."""
+    """Read ``{preset, options {dotted: value}, label, external_id, priority, metadata}``; others are refused."""
     where = str(path)
     try:
         if path.stat().st_size > _MAX_PARAMETER_BYTES:
@@ -74,7 +77,9 @@ def read_parameters(path: Path) -> Parameters:
     for key, value in texts.items():
         if not isinstance(value, str):
             raise BadInput(f"'{key}' must be a text", where=where)
-    return Parameters(options=options, priority=parse_priority(data.get("priority", 0), where), **texts)
+    priority = parse_priority(data.get("priority", 0), where)
+    metadata = parse_metadata(data.get("metadata", {}), where)
+    return Parameters(options=options, priority=priority, metadata=metadata, **texts)
 
 
 def parse_priority(value: Any, where: str) -> int:

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
-from cli.terminal import console, say_json, visible
+from cli.terminal import console, duration, say_json, visible
 from core.states import TaskState
 from worker.events import Event, EventKind
 
@@ -147,16 +147,6 @@ def choose(as_json: bool) -> Display:
         return JsonDisplay(sys.stdout)
     terminal = console(error=True)
     return LiveDisplay(terminal) if terminal.is_terminal else PlainDisplay(sys.stderr)
-
-
-def duration(seconds: float) -> str:
-    """``4.2 s``, ``3 min 05 s``, ``2 h 07 min``."""
-    if seconds < 59.95:
-        return f"{seconds:.1f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 60:
-        return f"{minutes} min {rest:02d} s"
-    return f"{minutes // 60} h {minutes % 60:02d} min"
 
 
 def _position(event: Event) -> str:

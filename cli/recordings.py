@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from cli.input_files import annotation_file
@@ -48,6 +50,27 @@ def recordings_of(parsed: argparse.Namespace) -> Iterator[list[Recording]]:
             )
             for one in paired(parsed.files, parsed.annotations)
         ]
+
+
+@contextmanager
+def as_files(recordings: Sequence[Recording]) -> Iterator[list[Recording]]:
+    """The same with every folder or pattern of pictures packed into a zip that lives as long as the context.
+
+    A server is sent files only.
+
+    Raises:
+        BadInput: there are no pictures, or one cannot be read.
+    """
+    from core.video.pictures import pack_pictures  # loads vision libraries, which `--help` does not need
+
+    with tempfile.TemporaryDirectory(prefix="bladeatlas-") as folder:
+        found = []
+        for number, one in enumerate(recordings):
+            # A folder of its own for each, so that the zip keeps the name of what was packed.
+            packed = Path(folder, str(number), f"{one.video.name.replace('%', '')}.zip")
+            packed.parent.mkdir()
+            found.append(replace(one, video=packed) if pack_pictures(one.video, packed) else one)
+        yield found
 
 
 def paired(files: Sequence[Path], annotations: Sequence[Path] | None) -> list[Recording]:

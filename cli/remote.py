@@ -19,9 +19,8 @@ from cli.client.client import chosen
 from cli.client.transfers import no_progress
 from cli.input_files import calibration_options, with_format
 from cli.parameters import Parameters, parse_assignment, parse_priority, read_parameters
-from cli.progress import duration
-from cli.recordings import recordings_of
-from cli.terminal import console, say, say_json, visible
+from cli.recordings import as_files, recordings_of
+from cli.terminal import console, duration, say, say_json, visible
 from core.errors import BadInput
 from core.states import InspectionState
 
@@ -36,8 +35,8 @@ def submit(parsed: argparse.Namespace) -> int:
     with client_of(parsed) as client:
         with byte_bars() as bars:
             on_bytes = bars.show if bars is not None else no_progress
-            with recordings_of(parsed) as recordings:
-                first, *further = recordings
+            with recordings_of(parsed) as recordings, as_files(recordings) as sent:
+                first, *further = sent
                 inspection = client.submit(
                     first.video, first.annotations, parameters, further=further, on_bytes=on_bytes
                 )
@@ -65,6 +64,7 @@ def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
         parsed.label or base.label,
         parsed.external_id or base.external_id,
         priority,
+        base.metadata,
     )
     wanted.settings()
     return {
@@ -73,6 +73,7 @@ def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
         "label": wanted.label,
         "external_id": wanted.external_id,
         "priority": wanted.priority,
+        "metadata": wanted.metadata,
     }
 
 

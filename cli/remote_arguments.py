@@ -43,7 +43,7 @@ def _submit(submit: argparse.ArgumentParser) -> None:
         "--parameters",
         type=Path,
         metavar="FILE",
-        help="JSON {preset, options {name: value}, label, external_id, priority}",
+        help="JSON {preset, options {name: value}, label, external_id, priority, metadata}",
     )
     submit.add_argument("--label", default="", metavar="TEXT", help="free text")
     submit.add_argument("--external-id", default="", metavar="TEXT", help="your own name for it")

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from cli.progress import duration
+from cli.terminal import duration
 from worker.events import Outcome
 
 SHOWN_FILES = (

@@ -60,7 +60,7 @@ def _run(
             on_event=display.show,
             from_stage=parsed.from_stage,
             force=parsed.force,
-            names=Names(wanted.label, wanted.external_id),
+            names=Names(wanted.label, wanted.external_id, wanted.metadata),
         )
 
 

@@ -18,12 +18,12 @@ from api.services import make_services
 from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
 from store import json_log
+from store.announcing import Announcements
 from store.db import Database
 from store.factory import open_artifacts, open_database
 from store.graph import Graph, load_graph
 from store.housekeeping import Retention
 from store.keys import Keys
-from store.plan import Plan
 from store.settings import DeploymentSettings, deployment_settings
 from worker.broker import TaskQueue
 from worker.cleaner import UploadCleaner
@@ -117,8 +117,7 @@ def _background(
     _run(running, cleaning)
     if settings.broker_url:
         queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
-        plan = Plan(database, graph, settings.lease_s, settings.max_attempts)
-        sender = Periodic("queue", partial(queue.top_up, plan), settings.sweep_s)
+        sender = Periodic("queue", partial(queue.announce, Announcements(database)), settings.sweep_s)
         _run(running, sender)
         return lambda _inspection_id: sender.nudge()
     service = WorkerService(settings, database, open_artifacts(settings), graph, identity)

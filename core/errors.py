@@ -34,6 +34,10 @@ class BladeAtlasError(Exception):
         }
 
 
+class ProgrammingError(BladeAtlasError):
+    """A mistake in our code, never something that the input says: it stops a run, whichever task meets it."""
+
+
 class BadInput(BladeAtlasError):
     """The user's file or parameter is wrong. Never retried."""
 
@@ -78,7 +82,16 @@ class Cancelled(BladeAtlasError):
 
 _KINDS: dict[str, type[BladeAtlasError]] = {
     kind.__name__: kind
-    for kind in (BladeAtlasError, BadInput, NoReconstruction, StageFailed, ResourceError, DiskFull, Cancelled)
+    for kind in (
+        BladeAtlasError,
+        ProgrammingError,
+        BadInput,
+        NoReconstruction,
+        StageFailed,
+        ResourceError,
+        DiskFull,
+        Cancelled,
+    )
 }
 
 

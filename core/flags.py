@@ -67,6 +67,8 @@ FLAG_CODES: Mapping[str, str] = {
     "focal_implausible": "the focal length found gives a field of view that no borescope has",
     "distortion_implausible": "the lens distortion found folds the image: radius does not grow with angle",
     "high_reprojection_error": "the model fits its keypoints badly",
+    "scale_unknown": "a scale was told that this model cannot use; its sizes are in units of the model",
+    "scale_disagrees": "scales from several sources differ by more than their uncertainties say",
     "several_models": "several models that could not be joined hold defects: what two of them show is counted twice",
     "incomplete": "a stage after the model did not come to its end; what it and later ones make is missing",
     "no_surface": "there is a model but no surface: nothing has a place on it",

@@ -151,10 +151,11 @@ STAGES: dict[str, StageSpec] = {
             "timeline",
             *_options("mapping", "method", "radius_fraction", "sigma_fraction"),
             "timeline",
-            version=7,
+            "scale",
+            version=8,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=5, reads_video=True, weight=1),
+        _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),
         _spec("viewer", weight=2),
     )
 }
@@ -172,7 +173,7 @@ class TaskSpec:
     depends: tuple[str, ...] = ()
     args: Mapping[str, Any] = field(default_factory=dict)
     optional: bool = False
-    """A failure of this task is an outcome: tasks that depend on it go on without its result."""
+    """An expected failure of this task is an outcome: tasks that depend on it go on without its result."""
 
     @property
     def stage(self) -> str:

@@ -17,8 +17,9 @@ from store.accounts import Accounts
 from store.audit import AuditFilter, AuditLog
 from store.db import Database
 from store.inspections import mark_deleted
+from store.integration_models import InspectionEvent, MetadataEntry
 from store.keys import Keys
-from store.leasing import input_files
+from store.leasing import input_files, metadata_of
 from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Upload
 from store.plan import Plan
 
@@ -97,6 +98,9 @@ class AccountData:
                 mark_deleted(self.db, row.id)
             had += [row.id for row in rows]
         with self.db.write() as session:
+            owned = select(Inspection.id).where(Inspection.owner == self.account_id)
+            session.execute(delete(MetadataEntry).where(MetadataEntry.inspection_id.in_(owned)))
+            session.execute(delete(InspectionEvent).where(InspectionEvent.owner == self.account_id))
             said = update(Inspection).where(Inspection.owner == self.account_id)
             session.execute(said.values(label="", external_id="", parameters=None))
             if self.account_id != DEFAULT_ACCOUNT:
@@ -125,7 +129,8 @@ def _inspection(row: Inspection) -> dict[str, Any]:
     further = [
         {"video_sha256": one.video_sha256, "annotations_sha256": one.annotations_sha256} for one in input_files(row)[1:]
     ]
-    return plain({name: getattr(row, name) for name in (*names, *times, *hashes)}) | {"further_videos": further}
+    told = plain({name: getattr(row, name) for name in (*names, *times, *hashes)})
+    return told | {"further_videos": further, "metadata": metadata_of(row)}
 
 
 def _inputs(row: Inspection) -> Iterator[AccountFile]:

@@ -15,6 +15,8 @@ from sqlalchemy.orm import Session
 
 from store.account_models import AuditEntry, RequestCount, WebSession
 from store.db import Database
+from store.events import EventType, tell
+from store.integration_models import InspectionEvent
 from store.leasing import lock_inspection
 from store.models import (
     ACTIVE_INSPECTION,
@@ -43,6 +45,7 @@ class Retention:
 
     db: Database
     audit_days: float = 365.0
+    event_days: float = 30.0
 
     def expire(self) -> int:
         """Mark inspections as deleted whose time is over; returns how many."""
@@ -53,6 +56,8 @@ class Retention:
             late = session.scalars(query.with_for_update()).all()
             for inspection in late:
                 inspection.deleted_at = inspection.updated_at = now
+            for inspection in sorted(late, key=lambda one: one.owner):  # counters of accounts are held in one order
+                tell(session, inspection, EventType.DELETED, now)
             return len(late)
 
     def to_purge(self) -> list[str]:
@@ -147,7 +152,7 @@ class Retention:
         """Delete what nobody asks for any more.
 
         These are old requests, absent workers, removed uploads, ended reservations and sessions, counts of former
-        minutes, and entries of the audit log after their time.
+        minutes, and events and entries of the audit log after their time.
         """
         with self.db.write() as session:
             now = self.db.now(session)
@@ -159,6 +164,7 @@ class Retention:
             session.execute(delete(WebSession).where(WebSession.expires_at < now))
             session.execute(delete(RequestCount).where(RequestCount.minute < now - timedelta(minutes=2)))
             session.execute(delete(AuditEntry).where(AuditEntry.at < now - timedelta(days=self.audit_days)))
+            session.execute(delete(InspectionEvent).where(InspectionEvent.at < now - timedelta(days=self.event_days)))
 
 
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))

@@ -18,8 +18,17 @@ from core.settings import Settings
 from core.states import InspectionState, TaskState
 from store.advance import advance
 from store.db import Database
+from store.events import EventType, tell, tell_change
 from store.graph import CORE_GRAPH, Graph
-from store.leasing import changed, input_files, lock_inspection, put_result, set_input_files
+from store.leasing import (
+    changed,
+    input_files,
+    lock_inspection,
+    metadata_of,
+    put_result,
+    set_input_files,
+    set_metadata,
+)
 from store.models import ACTIVE_INSPECTION, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, InspectionView, Result, TaskView
@@ -53,6 +62,7 @@ class Inspections:
         files: Sequence[InputFiles],
         settings: Settings,
         out: str,
+        metadata: Mapping[str, str] | None = None,
         **more: Any,
     ) -> None:
         """The same inside the caller's transaction."""
@@ -69,9 +79,11 @@ class Inspections:
             **more,
         )
         set_input_files(inspection, files)
+        set_metadata(inspection, metadata or {})
         session.add(inspection)
         session.flush()
         advance(session, self.graph, inspection, now)
+        tell_change(session, self.graph, inspection, now)
 
     def reopen(
         self,
@@ -81,14 +93,15 @@ class Inspections:
         *,
         ended_only: bool = False,
         admit: Callable[[Session], None] | None = None,
+        metadata: Mapping[str, str] | None = None,
         **more: Any,
     ) -> None:
         """Plan an inspection anew, with other parameters, another input, or the same after a stop.
 
         The plan is rebuilt from nothing; finished fingerprints are taken up again, so only what changed is
         left to do, and failed tasks get a new chance. Old leases end: their results will be refused.
-        With `ended_only` an inspection that is not over is left alone; `more` are further columns. `admit` is called
-        first in the transaction and may refuse.
+        With `ended_only` an inspection that is not over is left alone; `metadata` replaces what it has, and `more`
+        are further columns. `admit` is called first in the transaction and may refuse.
 
         Raises:
             BadInput: `conflict` when a task is leased (cancel first, or take over leases of owners that are
@@ -115,9 +128,12 @@ class Inspections:
             inspection.state, inspection.error, inspection.failed_stage = InspectionState.QUEUED, None, None
             inspection.started_at, inspection.ended_at = None, None
             inspection.attempt, inspection.progress, inspection.expires_at = inspection.attempt + 1, 0.0, None
+            if metadata is not None:
+                set_metadata(inspection, metadata)
             for column, value in more.items():
                 setattr(inspection, column, value)
             advance(session, self.graph, inspection, now)
+            tell_change(session, self.graph, inspection, now)
 
     def find(self) -> list[InspectionView]:
         """All inspections, oldest first."""
@@ -201,6 +217,7 @@ def _view(row: Inspection) -> InspectionView:
         error=row.error,
         label=row.label,
         external_id=row.external_id,
+        metadata=metadata_of(row),
     )
 
 
@@ -228,8 +245,11 @@ def _task_view(task: Task, path: str | None) -> TaskView:
 def mark_deleted(db: Database, inspection_id: str) -> bool:
     """Mark an inspection as deleted; False when it was already."""
     with db.write() as session:
-        where = (Inspection.id == inspection_id, Inspection.deleted_at.is_(None))
-        return changed(session, update(Inspection).where(*where).values(deleted_at=db.now(session)))
+        where, now = (Inspection.id == inspection_id, Inspection.deleted_at.is_(None)), db.now(session)
+        if not changed(session, update(Inspection).where(*where).values(deleted_at=now)):
+            return False
+        tell(session, session.get_one(Inspection, inspection_id), EventType.DELETED, now)
+        return True
 
 
 def delete_results_from(inspections: Inspections, inspection_id: str, stage: str) -> list[str]:

@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 
 from core.errors import BadInput
 from core.states import AttemptOutcome, TaskState
+from store.integration_models import MetadataEntry
 from store.models import LEASABLE, Attempt, FurtherVideo, Inspection, Task
 from store.models import Result as ResultRow
 from store.records import InputFiles, Lease, Result
@@ -89,6 +90,21 @@ def set_input_files(inspection: Inspection, files: Sequence[InputFiles]) -> None
     for row, one in zip(_rows(inspection), files, strict=True):
         row.video_path, row.video_sha256 = one.video, one.video_sha256
         row.annotations_path, row.annotations_sha256 = one.annotations, one.annotations_sha256
+
+
+def metadata_of(row: Inspection) -> dict[str, str]:
+    """The metadata of an inspection, by name."""
+    return {entry.name: entry.value for entry in row.metadata_entries}
+
+
+def set_metadata(row: Inspection, metadata: Mapping[str, str]) -> None:
+    """Replace the metadata of an inspection; an empty text is no entry."""
+    known = {entry.name: entry for entry in row.metadata_entries}
+    wanted = {name: text for name, text in metadata.items() if text}
+    entries = {name: known.get(name) or MetadataEntry(name=name) for name in wanted}
+    for name, entry in entries.items():
+        entry.value = wanted[name]
+    row.metadata_entries = list(entries.values())
 
 
 def begin_attempt(session: Session, task: Task, now: datetime) -> None:

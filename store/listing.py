@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 from sqlalchemy import Select, and_, func, or_, select
 
 from store.cursors import bad_cursor, decode_cursor, encode_cursor
 from store.db import Database
+from store.integration_models import MetadataEntry
 from store.models import ACTIVE_INSPECTION, Inspection
 from store.status import shown_state_column
 
@@ -26,6 +27,8 @@ class Filter:
     external_id: str | None = None
     created_after: datetime | None = None
     created_before: datetime | None = None
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    """Exactly these entries."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,9 @@ def _chosen(chosen: Filter) -> Select[Inspection]:
         query = query.where(Inspection.created_at >= chosen.created_after)
     if chosen.created_before is not None:
         query = query.where(Inspection.created_at < chosen.created_before)
+    for name, value in chosen.metadata.items():
+        entry = (MetadataEntry.inspection_id == Inspection.id, MetadataEntry.name == name, MetadataEntry.value == value)
+        query = query.where(select(MetadataEntry.name).where(*entry).exists())
     return query
 
 

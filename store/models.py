@@ -18,6 +18,7 @@ from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 from store.account_models import DEFAULT_ACCOUNT
 from store.columns import Base as Base
 from store.columns import Choice, with_columns_of
+from store.integration_models import MetadataEntry
 
 LEASABLE = (InspectionState.QUEUED, InspectionState.RUNNING)
 """States of an inspection whose tasks may start."""
@@ -81,6 +82,10 @@ class Inspection(Base):
     """Id of the account that it belongs to. Who asks with a key of another account does not find it."""
     label: Mapped[str] = mapped_column(String(256), default="")
     external_id: Mapped[str] = mapped_column(String(256), default="", index=True)
+    metadata_entries: Mapped[list[MetadataEntry]] = relationship(
+        order_by=MetadataEntry.name, cascade="all, delete-orphan", passive_deletes=True, lazy="selectin"
+    )
+    """`store.leasing.metadata_of` gives them as names and texts."""
     parameters: Mapped[dict[str, Any] | None]
     """As they were asked for; `settings` is what they meant."""
     attempt: Mapped[int] = mapped_column(default=1)
@@ -107,6 +112,8 @@ class Inspection(Base):
     """The row outlives its files, so that its id answers 410."""
     purged_at: Mapped[datetime | None]
     """When the files of a deleted inspection were removed."""
+    told: Mapped[str] = mapped_column(String(96), default="")
+    """Attempt, state and stage that the last event of a change told of; see `store.events`."""
     previous: Mapped[list[str]]
     """Fingerprints of the plan before the last change of parameters: going back to it costs nothing."""
     created_at: Mapped[datetime]
@@ -144,6 +151,8 @@ class Task(Base):
     """Grows with every lease; only the holder of the newest may end the task."""
     lease_owner: Mapped[str | None] = mapped_column(String(128))
     lease_expires_at: Mapped[datetime | None]
+    announced_at: Mapped[datetime | None]
+    """When a message said last that it can start; None before, and once it was leased. See `store.announcing`."""
     started_at: Mapped[datetime | None]
     ended_at: Mapped[datetime | None]
     seconds: Mapped[float | None]
@@ -352,5 +361,7 @@ class Worker(Base):
     name: Mapped[str] = mapped_column(String(128), primary_key=True)
     host: Mapped[str] = mapped_column(String(128))
     queues: Mapped[list[str]]
+    slots: Mapped[int] = mapped_column(default=0)
+    """Tasks side by side that it takes by message; 0 when it only asks the database."""
     started_at: Mapped[datetime]
     seen_at: Mapped[datetime]

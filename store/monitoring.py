@@ -74,19 +74,19 @@ def count_all(db: Database) -> Counts:
 
 @dataclass(frozen=True)
 class WorkerRegistry:
-    """The table of workers. Nothing depends on it: leases say who does what."""
+    """The table of workers. It says how many messages are wanted; leases alone say who does what."""
 
     db: Database
 
-    def seen(self, name: str, queues: Sequence[str]) -> None:
-        """A worker is alive."""
+    def seen(self, name: str, queues: Sequence[str], slots: int = 0) -> None:
+        """A worker is alive, and takes so many tasks side by side by message."""
         with self.db.write() as session:
             now = self.db.now(session)
             row = session.get(Worker, name)
             if row is None:
                 row = Worker(name=name, host=platform.node()[:128], queues=list(queues), started_at=now, seen_at=now)
                 session.add(row)
-            row.queues, row.seen_at = list(queues), now
+            row.queues, row.slots, row.seen_at = list(queues), slots, now
 
     def alive(self, within_s: float) -> list[str]:
         """Names of this host's workers that were seen so lately."""

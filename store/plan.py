@@ -13,12 +13,14 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import delete, func, select, update
+from sqlalchemy import ColumnElement, delete, select, update
 from sqlalchemy.orm import Session
 
 from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 from store.advance import accept, advance
+from store.announcing import unheard
 from store.db import Database
+from store.events import tell_change
 from store.graph import CORE_GRAPH, Graph
 from store.leasing import (
     begin_attempt,
@@ -48,25 +50,50 @@ class Plan:
     def advance(self, inspection_id: str) -> None:
         """Bring a plan up to date with the results known now; harmless at any time."""
         with self.db.write() as session:
-            inspection = lock_inspection(session, inspection_id)
-            advance(session, self.graph, inspection, self.db.now(session))
+            inspection, now = lock_inspection(session, inspection_id), self.db.now(session)
+            advance(session, self.graph, inspection, now)
+            tell_change(session, self.graph, inspection, now)
 
     def lease(
-        self, owner: str, *, inspection_id: str | None = None, queues: Collection[str] = tuple(Queue)
+        self,
+        owner: str,
+        *,
+        inspection_id: str | None = None,
+        queues: Collection[str] = tuple(Queue),
+        unheard_s: float | None = None,
     ) -> Lease | None:
-        """Take the first runnable task of the inspection whose turn it is (`store.turns`); None when there is none."""
+        """Take the first runnable task of the inspection whose turn it is (`store.turns`); None when there is none.
+
+        Args:
+            owner: name in the lease.
+            inspection_id: of this inspection only.
+            queues: of these only.
+            unheard_s: only what was not announced by message, or longer ago than this, in seconds.
+        """
         with self.db.read() as session:
-            query = inspections_in_turn(select(Task.id).where(*_runnable(Inspection.id, queues)).exists())
+            which: list[ColumnElement[bool]] = [Task.queue.in_(queues)]
+            if unheard_s is not None:
+                which.append(unheard(self.db.now(session), unheard_s))
+            query = inspections_in_turn(select(Task.id).where(*_runnable(Inspection.id), *which).exists())
             if inspection_id is not None:
                 query = query.where(Inspection.id == inspection_id)
             candidates = session.scalars(query).all()
-        taken = (self._lease_in(candidate, owner, queues) for candidate in candidates)
+        taken = (self._lease_in(candidate, owner, *which) for candidate in candidates)
         return next((lease for lease in taken if lease is not None), None)
 
-    def _lease_in(self, inspection_id: str, owner: str, queues: Collection[str]) -> Lease | None:
+    def lease_named(self, owner: str, inspection_id: str, key: str) -> Lease | None:
+        """Take this task; None when it cannot start, or not any more."""
+        with self.db.read() as session:
+            query = select(Task.id).where(*_runnable(inspection_id), Task.key == key)
+            if session.scalar(query) is None:
+                return None
+        return self._lease_in(inspection_id, owner, Task.key == key)
+
+    def _lease_in(self, inspection_id: str, owner: str, *which: ColumnElement[bool]) -> Lease | None:
+        """Take the first runnable task of an inspection that is one of `which`."""
         with self.db.write() as session:
             inspection = lock_inspection(session, inspection_id)
-            query = select(Task.id).where(*_runnable(inspection_id, queues)).order_by(Task.position).limit(1)
+            query = select(Task.id).where(*_runnable(inspection_id), *which).order_by(Task.position).limit(1)
             task_id = session.scalar(query) if inspection.state in LEASABLE else None
             if task_id is None:
                 return None
@@ -82,6 +109,7 @@ class Plan:
                 "attempt": Task.attempt + 1,
                 "lease_owner": owner,
                 "lease_expires_at": now + timedelta(seconds=self.lease_s),
+                "announced_at": None,
                 "started_at": now,
             }
             if not changed(
@@ -92,7 +120,9 @@ class Plan:
             begin_attempt(session, task, now)
             begin_turn(session, inspection.owner, now)
             inspection.state, inspection.started_at = InspectionState.RUNNING, inspection.started_at or now
-            return lease_of(session, inspection, task)
+            lease = lease_of(session, inspection, task)
+            tell_change(session, self.graph, inspection, now)
+            return lease
 
     def heartbeat(self, beats: Iterable[tuple[Lease, float, str]]) -> list[Lease]:
         """Renew leases with their progress; returns those that are lost, whose work must stop."""
@@ -201,17 +231,6 @@ class Plan:
             ).all()
         return sum(self._free(inspection_id, owner_prefix) for inspection_id in ids)
 
-    def runnable(self) -> dict[Queue, int]:
-        """How many tasks could start now, by queue."""
-        with self.db.read() as session:
-            query = (
-                select(Task.queue, func.count())
-                .join(Inspection, Inspection.id == Task.inspection_id)
-                .where(Task.state == TaskState.RUNNABLE, Inspection.state.in_(LEASABLE))
-                .group_by(Task.queue)
-            )
-            return {queue: count for queue, count in session.execute(query)}  # noqa: C416 - rows are not plain tuples
-
     def leased(self) -> set[str]:
         """Fingerprints that somebody works on now."""
         with self.db.read() as session:
@@ -258,10 +277,11 @@ class Plan:
             )
             if session.scalar(running) is None:
                 inspection.state, inspection.ended_at, inspection.updated_at = InspectionState.CANCELLED, now, now
+        tell_change(session, self.graph, inspection, now)
 
 
-def _runnable(inspection_id: Any, queues: Collection[str]) -> tuple[Any, ...]:
-    return (Task.inspection_id == inspection_id, Task.state == TaskState.RUNNABLE, Task.queue.in_(queues))
+def _runnable(inspection_id: Any) -> tuple[ColumnElement[bool], ...]:
+    return (Task.inspection_id == inspection_id, Task.state == TaskState.RUNNABLE)
 
 
 def _end(
@@ -308,5 +328,5 @@ def remake(session: Session, inspection: Inspection, keys: Collection[str]) -> N
             task.state, task.reused, task.attempt = TaskState.WAITING, False, 0
             task.facts, task.digest, task.ended_at, task.progress = None, None, None, 0.0
         elif task.state == TaskState.RUNNABLE and not set(keys).isdisjoint(task.depends):
-            task.state = TaskState.WAITING
+            task.state, task.announced_at = TaskState.WAITING, None
     session.flush()

@@ -18,7 +18,9 @@ from sqlalchemy.orm import Session
 from core.outputs import VIEWER
 from store.account_models import Account
 from store.db import Database
+from store.events import tell_change
 from store.files import Stored
+from store.graph import CORE_GRAPH
 from store.leasing import changed, lock_inspection
 from store.models import ACTIVE_INSPECTION, Artifact, Inspection
 from store.tables import replace_rows
@@ -149,6 +151,8 @@ class Publishing:
                 return False
             _replace_artifacts(session, ticket, files, now)
             replace_rows(session, inspection.id, rows)
+            session.refresh(inspection)
+            tell_change(session, CORE_GRAPH, inspection, now)
             return True
 
     def _until(self, session: Session, owner: str, now: datetime) -> datetime | None:

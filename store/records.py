@@ -97,3 +97,4 @@ class InspectionView:
     error: Mapping[str, Any] | None
     label: str = ""
     external_id: str = ""
+    metadata: Mapping[str, str] = field(default_factory=dict)

@@ -97,6 +97,11 @@ class DeploymentSettings(BaseSettings):
         "others had it",
     )
     audit_days: float = Field(365.0, gt=0, description="the audit log is kept so long, in days")
+    event_days: float = Field(30.0, gt=0, description="events are kept so long, in days")
+    max_event_streams: int = Field(
+        500, ge=1, description="streams of events that one server keeps open, at most; more get 429"
+    )
+    max_event_streams_per_owner: int = Field(20, ge=1, description="the same of one owner")
     max_frame_pixels: int = Field(
         MAX_FRAME_PIXELS,
         ge=1,

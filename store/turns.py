@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, Subquery, UnaryExpression, func, select, update
+from sqlalchemy import ColumnElement, Select, Subquery, UnaryExpression, and_, func, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.states import InspectionState, TaskState
@@ -28,6 +28,34 @@ def inspections_in_turn(*where: ColumnElement[bool]) -> Select[str]:
         .where(Inspection.state.in_(LEASABLE), *where)
         .order_by(*_accounts_in_turn(running), *_within_account())
     )
+
+
+def tasks_in_turn(announced: ColumnElement[bool], *where: ColumnElement[bool]) -> Select[Task]:
+    """Runnable tasks that fulfil `where`, in the order in which they get their turns, one after the other.
+
+    It is the order in which a single runner would lease them if none ended meanwhile: every task that an account gets
+    counts before its next.
+
+    Args:
+        announced: of the runnable tasks, those that are about to start: they count as if they ran.
+    """
+    running = _running(and_(Task.state == TaskState.RUNNABLE, announced))
+    order = (*_within_account(), Task.position.asc())
+    rank = func.row_number().over(partition_by=Inspection.owner, order_by=order)
+    ranked = (
+        _with_turns(
+            select(Task.id.label("id"), (func.coalesce(running.c.tasks, 0) + rank).label("turn"), Account.turn_at)
+            .select_from(Task)
+            .join(Inspection, Inspection.id == Task.inspection_id),
+            running,
+        )
+        .where(Task.state == TaskState.RUNNABLE, Inspection.state.in_(LEASABLE), *where)
+        .subquery()
+    )
+    query = select(Task).join(ranked, ranked.c.id == Task.id).join(Inspection, Inspection.id == Task.inspection_id)
+    # The state once more: whoever locks the rows then looks at them as they are by that time.
+    query = query.where(Task.state == TaskState.RUNNABLE)
+    return query.order_by(ranked.c.turn, ranked.c.turn_at.asc().nulls_first(), *order)
 
 
 def begin_turn(session: Session, owner: str, now: datetime) -> None:
@@ -60,12 +88,12 @@ def queued_in_turn(session: Session) -> Sequence[str]:
     return session.scalars(query.order_by(ranked.c.rank, ranked.c.turn)).all()
 
 
-def _running() -> Subquery:
-    """How many tasks of each account run now."""
+def _running(*also: ColumnElement[bool]) -> Subquery:
+    """How many tasks of each account run now, or fulfil one of the other conditions."""
     return (
         select(Inspection.owner.label("owner"), func.count().label("tasks"))
         .join(Task, Task.inspection_id == Inspection.id)
-        .where(Task.state == TaskState.LEASED)
+        .where(or_(Task.state == TaskState.LEASED, *also))
         .group_by(Inspection.owner)
         .subquery()
     )

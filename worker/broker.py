@@ -1,37 +1,51 @@
 """All of Celery: a worker of a distributed system, fed by the broker, or asking the database when there is none.
 
-A message says that a queue of the plan has work for one worker, and no more. The database is the truth. Whoever takes
-a message leases whatever task is next in the plan, so a message that comes twice finds nothing or other work, and one
-that was lost is replaced: `top_up` compares how many tasks could start with how many messages wait. Every waiting
-message is taken after that, so no task is left out.
+A Celery job is one task of a plan and is named so: ``bladeatlas.coarse("INSPECTION", "seg_006_0120_0300")``. Its
+message says that the task can start; whether it can, the database knows. So a message that comes twice finds nothing
+to do, and ends as ignored; one that was lost is sent again (`store.announcing`).
 """
 
 from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 from typing import Any
 
 from celery import Celery, signals
-from kombu import Connection, Exchange
+from celery.exceptions import Ignore, Retry
+from kombu import Exchange
 from kombu import Queue as BrokerQueue
 
-from core.states import Queue
+from core.states import AttemptOutcome, Queue
+from core.task_key import key_of, part_of, piece_of, stage_of
+from store.announcing import Announcements
 from store.db import Database
 from store.factory import open_artifacts
 from store.graph import load_graph
 from store.json_log import logger
-from store.plan import Plan
+from store.records import Lease
 from store.retry import retried_until
 from store.settings import DeploymentSettings
 from worker.loop import ConcurrencyLimit, PollingRunners, WorkerService, unique_name
 from worker.periodic import Periodic
-from worker.runner import Heartbeat
+from worker.runner import Ending, Heartbeat, ids
 
-_TASK = "bladeatlas.run"
+_PREFIX = "bladeatlas."
 _CONNECT_S = 4.0
+_AGAIN = (AttemptOutcome.RETRIED, AttemptOutcome.RELEASED)
+_IGNORED_EVENT = "task-ignored"
+"""Celery has no event for it, and without one a monitor shows an ignored job as running for ever."""
+
+Run = Callable[[str, str], Ending | None]
+"""Runs the task of an inspection with a key; None when it cannot start, or not any more."""
+
+
+class JobFailed(Exception):
+    """The stage of this job failed; what follows from that for the inspection, the plan says."""
+
+
 _log = logger("bladeatlas.worker")
 
 
@@ -42,7 +56,7 @@ class TaskQueue:
         self._app = Celery("bladeatlas", broker=broker_url, set_as_current=False)
         # The nameless exchange needs no bindings: a broker that lost its memory delivers at once again.
         self._queues = {
-            name: BrokerQueue(f"bladeatlas.{name}", Exchange(""), routing_key=f"bladeatlas.{name}") for name in Queue
+            name: BrokerQueue(f"{_PREFIX}{name}", Exchange(""), routing_key=f"{_PREFIX}{name}") for name in Queue
         }
         self._app.conf.update(
             broker_connection_retry_on_startup=True,
@@ -54,31 +68,38 @@ class TaskQueue:
             task_default_queue=self._queues[Queue.CPU].name,
             task_ignore_result=True,
             task_queues=list(self._queues.values()),
-            worker_enable_remote_control=False,
+            task_send_sent_event=True,
+            worker_enable_remote_control=True,
             worker_hijack_root_logger=False,
             worker_prefetch_multiplier=1,
             worker_redirect_stdouts=False,
+            worker_send_task_events=True,
         )
 
-    def top_up(self, plan: Plan) -> int:
-        """Send a message for every task that could start and has none; returns how many.
+    def announce(self, announcements: Announcements, unheard_s: float | None = None) -> int:
+        """Send the messages that are wanted now, in order; returns how many. `unheard_s`: see `Announcements.choose`.
 
-        Messages are counted before tasks: one that is taken in between has its task leased, or is one too many.
+        A broker that is away is noticed before tasks are noted as announced.
         """
         with self._app.connection_for_write() as connection:
             connection.ensure_connection(max_retries=1, timeout=_CONNECT_S)
-            waiting = {name: self._waiting(connection, queue) for name, queue in self._queues.items()}
-            missing = {name: count - waiting[name] for name, count in plan.runnable().items() if name in waiting}
-            for name, count in missing.items():
-                for _ in range(count):
-                    self._app.send_task(
-                        _TASK, args=(name,), queue=self._queues[name], connection=connection, retry=False
-                    )
-        return sum(max(0, count) for count in missing.values())
+            chosen = announcements.choose(unheard_s)
+            for one in chosen:
+                part, piece = part_of(one.key), piece_of(one.key)
+                self._app.send_task(
+                    _PREFIX + stage_of(one.key),
+                    args=(one.inspection_id, part) if part else (one.inspection_id,),
+                    kwargs={"piece": piece} if piece else {},
+                    queue=self._queues[one.queue],
+                    connection=connection,
+                    retry=False,
+                )
+        return len(chosen)
 
     def work(
         self,
-        run: Callable[[str], object],
+        run: Run,
+        stages: Collection[str],
         name: str,
         queues: Sequence[str],
         workers: int,
@@ -87,11 +108,13 @@ class TaskQueue:
         """Take messages until the process is told to stop; returns its exit code.
 
         Args:
-            run: called with the queue's name, in one of `workers` threads.
+            run: called in one of `workers` threads.
+            stages: names of all stages that a message may name.
             name: of this worker, for the broker.
+            queues: that it serves.
+            workers: messages side by side.
             on_stop: called when SIGTERM or SIGINT came: what runs should come to an end now.
         """
-        self._app.task(run, name=_TASK)
         # Celery leaves the logs alone when somebody listens to this.
         signals.setup_logging.connect(_leave_logging, weak=False)
         signals.worker_shutting_down.connect(lambda **_: on_stop(), weak=False)
@@ -100,20 +123,44 @@ class TaskQueue:
             pool="threads",
             concurrency=workers,
             queues=[self._queues[Queue(name)].name for name in queues],
-            hostname=name,
+            hostname=f"bladeatlas@{name}",
             quiet=True,
             without_gossip=True,
-            without_heartbeat=True,
             without_mingle=True,
         )
+
+        def tell_ignored(job_id: str) -> None:
+            dispatcher = worker.consumer.event_dispatcher
+            if dispatcher is not None:  # else it is connecting again
+                dispatcher.send(_IGNORED_EVENT, uuid=job_id)
+
+        for stage in stages:
+            self._register(stage, run, tell_ignored)
         worker.start()
         return int(worker.exitcode or 0)
 
-    @staticmethod
-    def _waiting(connection: Connection, queue: BrokerQueue) -> int:
-        """Messages that nobody has taken yet; makes the queue when there is none."""
-        with connection.channel() as channel:
-            return int(queue(channel).queue_declare().message_count)
+    def _register(self, stage: str, run: Run, tell_ignored: Callable[[str], None]) -> None:
+        """Let messages name a stage."""
+
+        def job(celery_task: Any, inspection_id: str, part: str = "", piece: int = 0) -> str:
+            ending = run(inspection_id, key_of(stage, piece, part))
+            if ending is None or ending.outcome == AttemptOutcome.REFUSED:
+                tell_ignored(celery_task.request.id)
+                raise Ignore
+            return _as_celery_says(ending)
+
+        self._app.task(job, name=_PREFIX + stage, bind=True, throws=(JobFailed,))
+
+
+def _as_celery_says(ending: Ending) -> str:
+    """End a job as what became of its task: successful with the outcome, failed, or to be tried again."""
+    said = f"{ending.error.code}: {ending.error.message}" if ending.error else str(ending.outcome)
+    if ending.outcome == AttemptOutcome.FAILED:
+        raise JobFailed(said)
+    if ending.outcome in _AGAIN:
+        # Only the state: the plan decides when, and then another message comes.
+        raise Retry(said, exc=JobFailed(said))
+    return said
 
 
 def _leave_logging(**_more: object) -> None:
@@ -139,8 +186,10 @@ def run_worker(settings: DeploymentSettings, database: Database, queues: Sequenc
         queues: of ``cpu`` and ``gpu``.
         workers: tasks side by side.
     """
+    # What is not fed by messages must not count among those who wait for some.
+    slots = workers if settings.broker_url else 0
     service = WorkerService(
-        settings, database, open_artifacts(settings), load_graph(settings.graph), unique_name(), tuple(queues)
+        settings, database, open_artifacts(settings), load_graph(settings.graph), unique_name(), tuple(queues), slots
     )
     _log.info(
         "worker_started", name=service.name, queues=list(queues), workers=workers, broker=bool(settings.broker_url)
@@ -167,22 +216,42 @@ def _asking(service: WorkerService, workers: int) -> int:
 def _fed_by_broker(service: WorkerService, workers: int) -> int:
     settings, plan = service.settings, service.plan
     queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
-    sender = Periodic("queue", partial(queue.top_up, plan), settings.sweep_s)
+    announcements = Announcements(service.database)
+
+    def announce(unheard_s: float | None = None) -> None:
+        service.report()  # else the first messages wait until somebody knows of this worker's slots
+        queue.announce(announcements, unheard_s)
+
+    sender = Periodic("queue", announce, settings.sweep_s)
+    again = Periodic("queue_again", partial(announce, settings.sweep_s), settings.sweep_s)
     service.on_end = sender.nudge
     runner = service.runner()
     heartbeat = Heartbeat(runner, settings.heartbeat_s)
+    limit = ConcurrencyLimit(workers, runner.interrupted, quiet_s=settings.sweep_s)
 
-    def run_next(queues: Sequence[str]) -> bool:
-        lease = retried_until(runner.interrupted, plan.db, lambda: plan.lease(service.name, queues=queues))
+    def leased(lease: Callable[[], Lease | None]) -> Lease | None:
+        return retried_until(runner.interrupted, plan.db, lease)
+
+    def run_next(unheard_s: float | None) -> bool:
+        lease = leased(lambda: plan.lease(service.name, queues=service.queues, unheard_s=unheard_s))
         if lease is not None:
+            _log.warning("ran_without_message", **ids(lease))
             runner.run(lease)
         return lease is not None
 
-    limit = ConcurrencyLimit(workers, run_next, runner.interrupted, quiet_s=settings.sweep_s)
+    def run_named(inspection_id: str, key: str) -> Ending | None:
+        lease = leased(lambda: plan.lease_named(service.name, inspection_id, key))
+        return runner.run(lease) if lease is not None else None
+
+    def on_message(inspection_id: str, key: str) -> Ending | None:
+        ending = limit.on_message(lambda: run_named(inspection_id, key))
+        if ending is None:
+            sender.nudge()  # the slot of this message is free for another
+        return ending
+
     # A broker that stops delivering to this worker costs time, not the job.
     helpers = [
-        Periodic("without_message", partial(limit.without_message, service.queues), settings.sweep_s)
-        for _ in range(workers)
+        Periodic("without_message", partial(limit.without_message, run_next), settings.sweep_s) for _ in range(workers)
     ]
 
     def keep() -> None:
@@ -195,18 +264,17 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
             signal.raise_signal(signal.SIGTERM)
 
     thread = threading.Thread(target=keep, name="heartbeat", daemon=True)
-    for part in (thread, service, sender):
+    thread.start()
+    service.start()
+    for part in (sender, again, *helpers):
         part.start()
-    for helper in helpers:
-        helper.start()
     try:
-        return queue.work(limit.on_message, service.name, service.queues, workers, runner.interrupted.set)
+        stages = service.plan.graph.stages
+        return queue.work(on_message, stages, service.name, service.queues, workers, runner.interrupted.set)
     finally:
         runner.interrupted.set()
-        for helper in helpers:
-            helper.stop()
-        sender.nudge()
-        sender.stop()
+        for part in (*helpers, again, sender):
+            part.stop()
         heartbeat.stopped.set()
         thread.join()
         service.stop()

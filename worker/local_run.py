@@ -10,9 +10,9 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import FrameType
 
@@ -117,6 +117,7 @@ class Names:
 
     label: str = ""
     external_id: str = ""
+    metadata: Mapping[str, str] = field(default_factory=dict)
 
 
 def run_inspection(

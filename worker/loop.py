@@ -37,7 +37,6 @@ from worker.periodic import Periodic
 from worker.publish import Publisher
 from worker.runner import TICK_S, Heartbeat, TaskRunner, ids
 
-_worker_log = logger("bladeatlas.worker")
 _task_log = logger("bladeatlas.tasks")
 _runners_log = logger("bladeatlas.runners")
 T = TypeVar("T")
@@ -51,46 +50,50 @@ _CLEAN_EVERY = 6
 class ConcurrencyLimit:
     """How many tasks a worker runs side by side, whether a message or its own look into the plan brought them.
 
-    A message starts work at once; a worker that has heard none for a while asks the plan by itself.
+    A message starts its task at once; a worker that has heard none for a while asks the plan by itself.
 
     A broker may stop delivering without saying so: after a restart of Redis in the moment of an acknowledgement,
     Celery counts that message for ever and asks for no other. The plan is the truth, so the worker need not know why.
     """
 
-    def __init__(
-        self, count: int, run_next: Callable[[Sequence[str]], bool], stopped: threading.Event, quiet_s: float
-    ) -> None:
+    def __init__(self, count: int, stopped: threading.Event, quiet_s: float) -> None:
         """Let `count` tasks run side by side.
 
         Args:
-            run_next: leases the next task of some queues and runs it to its end; False when there was none.
+            count: at most so many.
             stopped: set when nothing more may start.
             quiet_s: so long without a message, and the worker asks by itself.
         """
         self._free = threading.Semaphore(count)
-        self._run_next = run_next
         self._stopped = stopped
         self._quiet_s = quiet_s
         self._last_message = time.monotonic()
 
-    def on_message(self, queue: str) -> None:
-        """Run the next task of a queue, as soon as another task may run."""
+    def on_message(self, run: Callable[[], T | None]) -> T | None:
+        """Run what a message named, as soon as another task may run; None when nothing ran."""
         self._last_message = time.monotonic()
         while not self._free.acquire(timeout=_TICK_S):
             if self._stopped.is_set():
-                return
+                return None
         try:
-            self._run_next((queue,))
+            return run()
         finally:
             self._free.release()
 
-    def without_message(self, queues: Sequence[str]) -> None:
-        """Run tasks of the queues for as long as there are some, another task may run and no message comes."""
+    def without_message(self, run_next: Callable[[float | None], bool]) -> None:
+        """Run tasks for as long as there are some, another task may run and no message comes.
+
+        Args:
+            run_next: leases the next task and runs it to its end; False when there was none. Its argument is as
+                `unheard_s` of `Plan.lease`: the first task must be one of which no message came in time, which shows
+                that messages do not come. After it any will do.
+        """
+        unheard_s: float | None = self._quiet_s
         while self._is_quiet() and self._free.acquire(blocking=False):
             try:
-                if not self._run_next(queues):
+                if not run_next(unheard_s):
                     return
-                _worker_log.warning("ran_without_message", queues=list(queues))
+                unheard_s = None
             finally:
                 self._free.release()
 
@@ -129,6 +132,8 @@ class WorkerService:
     name: str
     """Owner of its leases; unique, or kept over restarts by whoever can vouch that the old process is gone."""
     queues: Sequence[str] = tuple(Queue)
+    slots: int = 0
+    """Tasks side by side that it takes by message."""
     on_end: Callable[[], None] = field(default=lambda: None)
     """Called whenever a task ended: others may have become runnable."""
 
@@ -150,7 +155,7 @@ class WorkerService:
             settings.heartbeat_s,
         )
         cleaner = Cleaner(
-            Retention(self.database, settings.audit_days),
+            Retention(self.database, settings.audit_days, settings.event_days),
             self.inspections,
             self.plan,
             self.store,
@@ -159,11 +164,10 @@ class WorkerService:
             settings.stale_s,
         )
         self._publisher = Periodic("publisher", publisher.publish_all, settings.sweep_s)
-        seen = partial(self._registry.seen, self.name, self.queues)
         self._periodic = (
             self._publisher,
             Periodic("cleaner", cleaner.round, settings.sweep_s * _CLEAN_EVERY),
-            Periodic("registry", seen, settings.heartbeat_s),
+            Periodic("registry", self.report, settings.heartbeat_s),
         )
 
     def runner(self) -> TaskRunner:
@@ -180,6 +184,10 @@ class WorkerService:
             self.settings.task_seconds,
             self.settings.max_frame_pixels,
         )
+
+    def report(self) -> None:
+        """Say that this worker is there, and what it takes."""
+        self._registry.seen(self.name, self.queues, self.slots)
 
     def start(self) -> None:
         """Begin with the periodic tasks."""

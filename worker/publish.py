@@ -104,6 +104,7 @@ def record_of(
         message=str(error.get("message", "")),
         label=inspection.label,
         external_id=inspection.external_id,
+        metadata=inspection.metadata,
     )
     return record, folders
 

@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from core.errors import BladeAtlasError, DiskFull, ResourceError
+from core.errors import BladeAtlasError, DiskFull, ProgrammingError, ResourceError
 from core.settings import Settings
 from core.states import AttemptOutcome
 from core.video.limits import MAX_FRAME_PIXELS
@@ -52,6 +52,15 @@ class Observer(Protocol):
         """A task is over: succeeded, reused, retried, failed, released, refused."""
 
 
+@dataclass(frozen=True)
+class Ending:
+    """How a lease ended."""
+
+    outcome: AttemptOutcome
+    error: BladeAtlasError | None
+    """What the stage, or the runner, failed with."""
+
+
 @dataclass
 class Held:
     """A lease while this process works on it."""
@@ -78,7 +87,7 @@ class TaskRunner:
     interrupted: threading.Event = field(default_factory=threading.Event)
     held: dict[int, Held] = field(default_factory=dict)
 
-    def run(self, lease: Lease) -> str:
+    def run(self, lease: Lease) -> Ending:
         """Execute a lease; returns how it ended."""
         held = Held(lease)
         self.held[lease.task_id] = held
@@ -93,7 +102,7 @@ class TaskRunner:
             self.held.pop(lease.task_id, None)
         self._end_log(lease, outcome)
         self.observer.ended(lease, outcome, error)
-        return outcome
+        return Ending(outcome, error)
 
     def _execute(self, held: Held) -> tuple[AttemptOutcome, BladeAtlasError | None]:
         lease = held.lease
@@ -167,8 +176,7 @@ class TaskRunner:
         return AttemptOutcome.SUCCEEDED if accepted else AttemptOutcome.REFUSED
 
     def _fail(self, lease: Lease, error: BladeAtlasError, seconds: float, peak_rss_bytes: int) -> AttemptOutcome:
-        # A full disk would fail every other task as well, and tolerating it would spoil the result unseen.
-        record = {**error.to_dict(), "stops_run": isinstance(error, DiskFull)}
+        record = {**error.to_dict(), "stops_run": _stops_run(error)}
         retry = error.retryable and error.code not in _SAME_AGAIN
         return self._retried(
             lambda: self.plan.fail(lease, record, retry=retry, seconds=seconds, peak_rss_bytes=peak_rss_bytes)
@@ -193,6 +201,15 @@ class TaskRunner:
 def ids(lease: Lease) -> dict[str, str | int]:
     """What every log line about a lease names."""
     return {"inspection": lease.inspection_id, "stage": lease.key, "attempt": lease.attempt}
+
+
+def _stops_run(error: BladeAtlasError) -> bool:
+    """Whether an error ends the run in an optional task too, because going on would spoil the result unseen.
+
+    A full disk would fail every other task as well, and a mistake in the code is never something that the video says.
+    What a library raises on hard input (`RuntimeError`, `ValueError`) is an outcome of that task alone.
+    """
+    return isinstance(error, DiskFull | ProgrammingError)
 
 
 def _as_expected(failure: OSError | BladeAtlasError, key: str) -> BladeAtlasError:

@@ -30,13 +30,15 @@ from typing import Any, NoReturn
 import psutil
 
 from core.child_environment import child_environment
-from core.errors import BladeAtlasError, DiskFull, ResourceError, error_from_dict
+from core.errors import BladeAtlasError, DiskFull, ProgrammingError, ResourceError, error_from_dict
 from core.settings import Settings, only_declared
 from core.stage import StageResult, StageTask
 from core.videos import Recording
 from store.disk import NO_SPACE, disk_is_full
 from worker.results import seal
 
+_MISTAKES = (TypeError, AttributeError, NameError, LookupError, AssertionError, ImportError, NotImplementedError)
+"""Errors that code raises because it is wrong; libraries raise others on input that they cannot handle."""
 _POLL_S = 0.2
 _GRACE_S = 2.0
 """Between the request to stop and the kill: nothing of an unfinished task is worth waiting longer for."""
@@ -325,8 +327,9 @@ def describe(error: BaseException, key: str, out: Path) -> dict[str, Any]:
             reason = os.strerror(cause.errno or 0).lower()
             return DiskFull(f"the output folder cannot be written: {reason}", where=key).to_dict()
         cause = cause.__cause__ or cause.__context__
-    name = type(error).__name__
-    return BladeAtlasError(f"{name}: {error}".strip()[:2000], where=key).to_dict()
+    message = f"{type(error).__name__}: {error}".strip()[:2000]
+    kind = ProgrammingError if isinstance(error, _MISTAKES) else BladeAtlasError
+    return kind(message, where=key).to_dict()
 
 
 if __name__ == "__main__":

@@ -122,7 +122,12 @@ def _settings(row: Inspection, parameters: Parameters | None) -> tuple[Settings,
         status = HTTPStatus.UNPROCESSABLE_ENTITY
         raise Refused(status, "bad_parameters", errors[0].detail, where="options", errors=errors) from None
     changes: dict[str, Any] = {"parameters": {"preset": parameters.preset, "options": parameters.options}}
-    given = {"label": parameters.label, "external_id": parameters.external_id, "priority": parameters.priority}
+    given: dict[str, Any] = {
+        "label": parameters.label,
+        "external_id": parameters.external_id,
+        "priority": parameters.priority,
+    }
+    given["metadata"] = parameters.metadata
     changes.update({name: value for name, value in given.items() if value})
     return settings_of(parameters), changes
 

@@ -14,17 +14,20 @@ from starlette.concurrency import run_in_threadpool
 from api import schemas
 from api.auth import Caller, Reader, Submitter
 from api.finding import find_inspection, gone, is_id
+from api.naming import Change, MetadataFilter
 from api.negotiation import matches
 from api.paging import next_link
 from api.parameters import Text, moment
 from api.problems import Refused, not_found, responses
 from api.sending import CREATE_BODY, asked_by_form, asked_by_json
+from api.services import Services
 from api.state import State, state_of
-from api.submit import Asked, accept
+from api.submit import Asked, accept, require_priority
 from api.watching import Snapshot
 from store.inspections import mark_deleted
 from store.listing import Filter, list_inspections
 from store.models import ACTIVE_INSPECTION
+from store.naming import rename
 from store.status import Statuses
 
 router = APIRouter(prefix="/v1/inspections", tags=["inspections"])
@@ -155,6 +158,7 @@ def listing(
     request: Request,
     response: Response,
     caller: Reader,
+    metadata: MetadataFilter,
     state: Annotated[list[schemas.State] | None, Query(description="any of these", examples=[["running"]])] = None,
     label: Annotated[Text | None, Query(description="exactly this label")] = None,
     external_id: Annotated[Text | None, Query(description="exactly this external id")] = None,
@@ -172,6 +176,7 @@ def listing(
         external_id=external_id,
         created_after=moment(created_after, "created_after"),
         created_before=moment(created_before, "created_before"),
+        metadata=metadata,
     )
     services = here.services
     page = list_inspections(services.db, chosen, limit, cursor)
@@ -181,6 +186,26 @@ def listing(
     return schemas.Inspections(
         inspections=[here.resources.resource(status) for status in shown], next_cursor=page.cursor
     )
+
+
+@router.patch(
+    "/{inspection_id}",
+    response_model=schemas.Resource,
+    summary="Change what an inspection is named by",
+    responses={200: {"headers": _ETAG}, **responses(400, 401, 404, 410, 422, 503)},
+)
+async def change(request: Request, caller: Submitter, inspection_id: str, body: Change) -> Response:
+    """Set label, external id, priority, and single entries of the metadata; files that are published stay."""
+    state = state_of(request)
+    await run_in_threadpool(_change, state.services, inspection_id, caller.owner, body)
+    state.watcher.invalidate(inspection_id)
+    return await represent(state, inspection_id, caller)
+
+
+def _change(services: Services, inspection_id: str, owner: str, body: Change) -> None:
+    find_inspection(services, inspection_id, owner)
+    require_priority(services, owner, body.priority or 0, "/priority")
+    rename(services.db, inspection_id, body.naming())
 
 
 @router.delete(

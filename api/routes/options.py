@@ -145,6 +145,9 @@ class Limits(BaseModel):
                 "max_kept_bytes_per_owner": 0,
                 "max_requests_per_minute": 0,
                 "max_requests_per_minute_per_owner": 0,
+                "max_event_streams": 500,
+                "max_event_streams_per_owner": 20,
+                "event_days": 30.0,
                 "max_frame_pixels": 40000000,
                 "max_video_frames": 500000,
                 "max_video_seconds": 21600.0,
@@ -172,6 +175,9 @@ class Limits(BaseModel):
     max_kept_bytes_per_owner: int = Field(description="the same of this account")
     max_requests_per_minute: int = Field(description="requests in a minute of the clock; more get 429; 0 = no limit")
     max_requests_per_minute_per_owner: int = Field(description="the same of this account")
+    max_event_streams: int = Field(description="streams of events that a server keeps open; more get 429")
+    max_event_streams_per_owner: int = Field(description="the same of one owner")
+    event_days: float = Field(description="events are kept so long")
     max_frame_pixels: int = Field(description="largest picture of a video in pixels; larger ones get 422")
     max_video_frames: int = Field(description="frames that a video's header may state; more get 422")
     max_video_seconds: float = Field(description="length that a video's header may state; longer ones get 422")

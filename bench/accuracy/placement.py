@@ -1,4 +1,4 @@
-"""Where detections and defects were placed, judged against the truth: right, wrong, found, split, extra."""
+"""Where detections and defects were placed, and how large, against the truth: right, wrong, found, split, extra."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from bench.accuracy.truth import TrueBox, Truth
 from core.geometry.boxes import box_iou
 from core.geometry.similarity import Similarity
 from core.scene.detection import Outcome
+from core.scene.size import LengthUnit, SizeFrom
 
 F64 = NDArray[np.float64]
 
@@ -162,15 +163,11 @@ def score_defects(
     owners: Counter[int] = Counter()
     extra = 0
     for record in records:
-        point = aligned_point(list(record.get("centroid") or [None]), record.get("model"), alignments)
-        near = []
-        if point is not None:
-            distances = ((patch_distance(point, defect.patch), key) for key, defect in truth.defects.items())
-            near = [item for item in distances if item[0] <= WRONG_CHORD_SHARE * truth.chord]
-        if near:
-            owners[min(near)[1]] += 1
-        else:
+        owner = owner_of(record, truth, alignments)
+        if owner is None:
             extra += 1
+        else:
+            owners[owner] += 1
     found = sum(1 for key in expected if owners[key])
     split = sum(owners.values()) - len(owners)
     return {
@@ -183,6 +180,16 @@ def score_defects(
     }
 
 
+def owner_of(record: dict[str, Any], truth: Truth, alignments: Mapping[int, Similarity | None]) -> int | None:
+    """The true defect that a record of `defects.json` belongs to; None for none."""
+    point = aligned_point(list(record.get("centroid") or [None]), record.get("model"), alignments)
+    if point is None:
+        return None
+    distances = ((patch_distance(point, defect.patch), key) for key, defect in truth.defects.items())
+    near = [item for item in distances if item[0] <= WRONG_CHORD_SHARE * truth.chord]
+    return min(near)[1] if near else None
+
+
 def persistence_by_record(records: list[dict[str, Any]]) -> dict[int, float | None]:
     """`persistence` of every record by id, whether written as a share or as an object with `k` and `n`."""
     table: dict[int, float | None] = {}
@@ -192,3 +199,48 @@ def persistence_by_record(records: list[dict[str, Any]]) -> dict[int, float | No
             value = value["k"] / value["n"] if value.get("n") else None
         table[int(record["id"])] = None if value is None else float(value)
     return table
+
+
+POWERS = {"length": 1, "width": 1, "area": 2, "depth": 1}
+"""Measures, and the power of a length that each is."""
+
+
+def score_sizes(
+    records: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Similarity | None]
+) -> dict[str, Any]:
+    """Relative errors of the measures by what they are from (``mask``, ``box``), each over all defects that have one.
+
+    A size in units of the model is brought to mm by the alignment of the cameras, as if the scale were known exactly.
+
+    Returns:
+        By origin and measure {count, median, p95, within_2_sigma}: of |measured / true - 1|, and the share of true
+        values within two standard deviations of the measured one. Measures that nothing is known of are left out.
+    """
+    found: dict[tuple[str, str], list[tuple[float, bool]]] = {}
+    for record in records:
+        owner = owner_of(record, truth, alignments)
+        sim3 = alignments.get(int(record.get("model") or 0))
+        if owner is None or sim3 is None:
+            continue
+        factor = 1.0 if record.get("length_unit") == LengthUnit.MM else sim3.scale
+        for name, true in truth.defects[owner].sizes.items():
+            value, sigma = record.get(name), record.get(f"{name}_sigma")
+            if value is None or sigma is None:
+                continue
+            value, sigma = (number * factor ** POWERS[name] for number in (value, sigma))
+            inside = abs(value - true) <= 2.0 * sigma
+            found.setdefault((record["size_from"], name), []).append((abs(value / true - 1.0), inside))
+    return {
+        str(origin): {name: _figures(found[origin, name]) for name in POWERS if (origin, name) in found}
+        for origin in SizeFrom
+    }
+
+
+def _figures(rows: list[tuple[float, bool]]) -> dict[str, Any]:
+    errors = np.array([error for error, _ in rows])
+    return {
+        "count": len(rows),
+        "median": float(np.median(errors)),
+        "p95": float(np.percentile(errors, 95)),
+        "within_2_sigma": float(np.mean([inside for _, inside in rows])),
+    }

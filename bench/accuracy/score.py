@@ -9,7 +9,13 @@ import numpy as np
 
 from bench.accuracy.align import align, pose_errors
 from bench.accuracy.confidence import score_confidence
-from bench.accuracy.placement import persistence_by_record, place_detections, score_defects, score_placements
+from bench.accuracy.placement import (
+    persistence_by_record,
+    place_detections,
+    score_defects,
+    score_placements,
+    score_sizes,
+)
 from bench.accuracy.result import Result, ResultModel, load_result
 from bench.accuracy.surface import Reference, make_reference, score_surface
 from bench.accuracy.truth import Truth, load_truth
@@ -21,7 +27,7 @@ def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
     """Score a result folder against a truth folder; the same input gives the same numbers.
 
     Returns:
-        {frames, cameras, mesh, cloud, placement, defects, confidence, models}: the headline is model 0,
+        {frames, cameras, mesh, cloud, placement, defects, sizes, confidence, models}: the headline is model 0,
         `models` holds the further ones by number. What cannot be measured is None.
     """
     truth, result = load_truth(truth_folder), load_result(result_folder)
@@ -42,6 +48,7 @@ def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
         **headline,
         "placement": score_placements(placements, persistence_by_record(result.defects)),
         "defects": score_defects(result.defects, placements, truth, alignments),
+        "sizes": score_sizes(result.defects, truth, alignments),
         "confidence": score_confidence(placements),
         "models": {str(number): model for number, model in scored.items()},
     }

@@ -13,6 +13,10 @@ def format_score(score: dict[str, Any]) -> str:
     defects = score["defects"]
     rows.append(("defects found / expected", f"{defects['found']} / {defects['expected']}"))
     rows.append(("defects split, extra, exact", f"{defects['split']}, {defects['extra']}, {_text(defects['exact'])}"))
+    for origin, measures in score["sizes"].items():
+        for name, one in measures.items():
+            texts = " / ".join(_text(one[key]) for key in ("median", "p95", "within_2_sigma", "count"))
+            rows.append((f"{name} by {origin}: error median / 95 %, within 2 sigma, count", texts))
     confidence = score["confidence"]
     rows.append(("confidence ECE, AUROC", f"{_text(confidence['ece'])}, {_text(confidence['auroc'])}"))
     for number, model in score["models"].items():

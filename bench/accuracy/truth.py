@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,8 @@ class TrueDefect:
     """(3,) mean of the patch (`surface_center`)."""
     patch: F64
     """(n, 3) points of the patch (`surface_points`)."""
+    sizes: Mapping[str, float]
+    """`length`, `width`, `depth` (mm) and `area` (mm^2), those that are known."""
 
 
 @dataclass(frozen=True)
@@ -134,8 +137,20 @@ def _defects(rows: list[dict[str, Any]]) -> dict[int, TrueDefect]:
         patch = np.asarray(row["surface_points"], np.float64).reshape(-1, 3)
         if len(patch):
             center = np.asarray(row["surface_center"], np.float64)
-            found[int(row["id"])] = TrueDefect(int(row["id"]), center * MM_PER_M, patch * MM_PER_M)
+            found[int(row["id"])] = TrueDefect(int(row["id"]), center * MM_PER_M, patch * MM_PER_M, _sizes(row))
     return found
+
+
+def _sizes(row: dict[str, Any]) -> dict[str, float]:
+    """As written; of a truth of before, the nominal diameter as length and width of what is no line."""
+    keys = {"length": ("length_m", 1), "width": ("width_m", 1), "area": ("area_m2", 2), "depth": ("depth_m", 1)}
+    if "length_m" in row:
+        written = {name: (row[key], power) for name, (key, power) in keys.items()}
+        return {name: float(value) * MM_PER_M**power for name, (value, power) in written.items() if value is not None}
+    if row.get("kind", "crack") == "crack" or "radius_m" not in row:
+        return {}
+    diameter = 2.0 * float(row["radius_m"]) * MM_PER_M
+    return {"length": diameter, "width": diameter}
 
 
 def _json(path: Path) -> Any:

@@ -16,6 +16,8 @@ HUB_MM = 150.0
 HEIGHT_MM = 48.0
 SPAN_CELLS, LOOP_CELLS = 72, 112
 KINDS = ("coating_loss", "burn", "crack", "dent", "nick")
+DENT_DEPTH = 0.35
+"""Depth of a dent at its deepest, in radii."""
 SPARE_BLADES = 3
 """Blades on each side of those that come into view."""
 
@@ -160,7 +162,7 @@ def _dented(scene: Scene, points: F64, defect: Defect) -> F64:
     inward = surface_point(scene, defect.blade, defect.span, defect.chord, -defect.side) - defect.center
     inward = inward / np.linalg.norm(inward)
     distance = np.linalg.norm(points - defect.center, axis=-1)
-    depth = 0.35 * defect.radius_mm * np.maximum(0.0, 1.0 - (distance / defect.radius_mm) ** 2) ** 2
+    depth = DENT_DEPTH * defect.radius_mm * np.maximum(0.0, 1.0 - (distance / defect.radius_mm) ** 2) ** 2
     moved: F64 = points + depth[..., None] * inward
     return moved
 

@@ -13,12 +13,13 @@ import av
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.scenes.blades import HEIGHT_MM, HUB_MM, Row, build_row
+from bench.scenes.blades import HEIGHT_MM, HUB_MM, Defect, Row, build_row
 from bench.scenes.detector import Detector, Visible, visible_defects
 from bench.scenes.path import Path as Motion
 from bench.scenes.path import make_path
 from bench.scenes.render import Painter, true_lens
 from bench.scenes.spec import Scene
+from bench.scenes.true_size import true_size
 from core.surface.ply import Mesh, write_mesh
 
 F64 = NDArray[np.float64]
@@ -105,6 +106,7 @@ class _Seen:
         self._rng = np.random.default_rng(scene.seed + 6)
         self.frames: list[list[dict[str, Any]]] = []
         self.points: dict[int, list[F64]] = {one.number: [] for one in row.defects}
+        self.shape: dict[int, list[F64]] = {one.number: [] for one in row.defects}
 
     def add(self, labels: NDArray[np.int32], point: F64) -> list[Visible]:
         """Note one frame."""
@@ -117,6 +119,7 @@ class _Seen:
             away = np.linalg.norm(inside - defect.center, axis=1)
             near = inside[np.nan_to_num(away, nan=np.inf) <= PATCH_REACH * defect.radius_mm]
             self.points[one.number].append(near[self._rng.permutation(len(near))[:200]])
+            self.shape[one.number].append(point[labels == one.number])
         return visible
 
     def patch(self, number: int) -> F64:
@@ -144,16 +147,16 @@ def _write_truth(scene: Scene, row: Row, poses: F64, times: list[float], seen: _
         "hub_radius_m": HUB_MM * MM,
         "blade_height_m": HEIGHT_MM * MM,
         "chord_m": [value * MM for value in scene.chord_mm],
-        "defects": [_defect(one, seen, scene.seed) for one in row.defects],
+        "defects": [_defect(one, seen, scene, row) for one in row.defects],
         "visible": seen.frames,
     }
     (folder / "defects.json").write_text(json.dumps(defects), encoding="utf-8")
     write_mesh(folder / "surface.ply", Mesh(row.vertices * MM, row.faces), ["unit: metre"])
 
 
-def _defect(one: Any, seen: _Seen, seed: int) -> dict[str, Any]:
+def _defect(one: Defect, seen: _Seen, scene: Scene, row: Row) -> dict[str, Any]:
     patch = seen.patch(one.number)
-    chosen = np.random.default_rng(seed + one.number).permutation(len(patch))[:MAX_PATCH_POINTS]
+    chosen = np.random.default_rng(scene.seed + one.number).permutation(len(patch))[:MAX_PATCH_POINTS]
     return {
         "id": one.number,
         "blade": one.blade,
@@ -165,4 +168,5 @@ def _defect(one: Any, seen: _Seen, seed: int) -> dict[str, Any]:
         "center": (one.center * MM).tolist(),
         "surface_center": (patch.mean(axis=0) * MM).tolist() if len(patch) else None,
         "surface_points": (patch[chosen] * MM).round(7).tolist(),
+        **true_size(scene, one, np.concatenate([np.zeros((0, 3)), *seen.shape[one.number]]), row),
     }

@@ -83,7 +83,7 @@ class Painter:
         towards = self._rays @ pose[:3, :3].T
         hit, point, normal = _hits(caster, vertices, self._row.faces, self._row.normals, pose[:3, 3], towards)
         distance = np.where(hit, np.linalg.norm(point - pose[:3, 3], axis=1), np.inf)
-        defect = _defects_at(point, hit, self._row.defects, pitch_rad(scene))
+        defect = defects_at(point, hit, self._row.defects, pitch_rad(scene))
         albedo = self._albedo(point, defect)
         shade = np.where(hit[:, None], _shade(point, normal, pose, albedo, scene.glare), BEHIND)
         if self._vanes is not None:
@@ -181,7 +181,7 @@ def _shade(point: F64, normal: F64, pose: F64, albedo: F64, glare: float) -> F64
     return total
 
 
-def _defects_at(point: F64, hit: NDArray[np.bool_], defects: tuple[Defect, ...], pitch: float) -> I32:
+def defects_at(point: F64, hit: NDArray[np.bool_], defects: tuple[Defect, ...], pitch: float) -> I32:
     """(n,) the defect that each seen point belongs to; -1 = none."""
     found = np.full(len(point), -1, np.int32)
     for one in defects:

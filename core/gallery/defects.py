@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow, Extent, Sighting
 from core.scene.frame import RunFrames, SourceFrame
 
-_UNITS = {MODEL_UNIT: "model units"}
+_UNITS: Mapping[str, str] = {MODEL_UNIT: "model units"}
 """Units of an extent as people read them, where that differs."""
 
 
@@ -38,7 +38,7 @@ class DefectLine:
     label: str
     model: int
     size: float | None
-    """Extent in `unit`; None = unknown."""
+    """Length along the surface in `unit`, by the thesis's rules the extent; None = unknown."""
     size_sigma: float | None
     unit: str
     start: Instant | None
@@ -78,7 +78,7 @@ def defect_lines(records: Sequence[DefectRecord], events: Sequence[EventRow], fr
 
 
 def _line(record: DefectRecord, visits: Sequence[EventRow], frames: RunFrames) -> DefectLine:
-    extent = record.extent or Extent(None, MODEL_UNIT, None)
+    extent = _size(record)
     return DefectLine(
         number=record.id,
         label=record.label,
@@ -95,6 +95,15 @@ def _line(record: DefectRecord, visits: Sequence[EventRow], frames: RunFrames) -
         place=record.centroid,
         best=_best(record.frames, frames),
     )
+
+
+def _size(record: DefectRecord) -> Extent:
+    """Its length along the surface; by rules that measure none, its extent."""
+    if record.size is None:
+        return record.extent or Extent(None, MODEL_UNIT, None)
+    length = record.size.length
+    value, sigma = (None, None) if length is None else (length.value, length.sigma)
+    return Extent(value, record.size.unit, sigma)
 
 
 def _best(views: Sequence[Sighting], frames: RunFrames) -> BestFrame | None:

@@ -87,6 +87,8 @@ class RunRecord:
     label: str = ""
     external_id: str = ""
     """The caller's own names of the run."""
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    """What the caller knows of the engine and the work; see `core.metadata`."""
 
     def facts(self, key: str) -> Facts:
         """Facts of a finished task; empty when it did not succeed or is not in the plan."""

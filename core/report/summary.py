@@ -13,6 +13,7 @@ from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.scene.defect import DefectRecord, EventRow, least_defects
 from core.scene.detection import DetectionRow, Outcome
+from core.scene.size import scale_fields
 from core.states import StageState, TaskState
 
 
@@ -34,13 +35,14 @@ def build_summary(
         "verdict": verdict,
         "label": record.label or None,
         "external_id": record.external_id or None,
+        "metadata": dict(record.metadata),
         "preset": record.settings.preset,
         "parameters": parameters,
         "inputs": dict(record.inputs),
         "fingerprint": run_fingerprint(record),
         "versions": dict(record.versions),
         "frame": _frame(record),
-        "scale": {"unit": "model", "value": None, "sigma": None},
+        "scale": record.facts("timeline").get("scale", scale_fields(None)),
         "stages": _stages(record.tasks),
         "headline": _headline(record, detections, timeline, defects),
     }

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from core.json_files import JsonObject
+from core.scene.size import LengthUnit, Size
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ TIMELINE_COLUMNS: tuple[str, ...] = tuple(EventRow.__dataclass_fields__)
 """Columns of ``mapping/timeline.csv``."""
 
 
-MODEL_UNIT = "model"
+MODEL_UNIT = LengthUnit.MODEL
 """Unit of lengths while no scale is known: that of the model's coordinates."""
 
 
@@ -167,6 +168,8 @@ class DefectRecord:
     """Detections whose estimated place falls on it."""
     evidence: str | None = None
     """Published path of its picture."""
+    size: Size | None = None
+    """How large it is on the surface."""
 
     def to_dict(self) -> JsonObject:
         """JSON form, keys in the order that readers know."""
@@ -191,7 +194,8 @@ class DefectRecord:
             "faces": list(self.faces),
             "blade": self.blade,
         }
-        return {name: value for name, value in row.items() if value is not None or name not in _ONLY_BY_CASTING}
+        found = {name: value for name, value in row.items() if value is not None or name not in _ONLY_BY_CASTING}
+        return found if self.size is None else {**found, **self.size.to_dict()}
 
     @classmethod
     def from_dict(cls, row: JsonObject) -> DefectRecord:
@@ -216,6 +220,7 @@ class DefectRecord:
             normal=None if row.get("normal") is None else _three(row["normal"]),
             approximate_detections=None if estimated is None else tuple(estimated),
             evidence=row.get("evidence"),
+            size=Size.from_dict(row) if "size_sigma" in row else None,
         )
 
 

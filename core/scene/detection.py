@@ -11,6 +11,7 @@ from typing import Any
 from core.geometry.boxes import Box
 from core.json_files import JsonObject
 from core.scene.frame import SourceFrame
+from core.scene.size import LengthUnit, SizeFrom
 from core.videos import moment
 
 Polygon = tuple[tuple[float, float], ...]
@@ -162,13 +163,29 @@ class DetectionRow:
     confidence: float | None
     """Probability that the detection is real and its place right."""
     blade: str | None
-    """Blade that it lies on; always empty."""
+    """Blade that it lies on, once `bladeatlas row` found the row."""
     defect_id: int | None
     """Record of defects.json that it belongs to."""
     model: int | None
     """Number of the model whose world frame holds the place."""
     video: int = 0
     """Number of the video that its key is of, from 0 in the order given."""
+    length: float | None = None
+    """Largest extent along the surface by this outline alone, in `length_unit`; only of the best views of a defect."""
+    length_sigma: float | None = None
+    """Standard deviation of the length."""
+    width: float | None = None
+    """Extent along the surface across the length, in `length_unit`."""
+    width_sigma: float | None = None
+    """Standard deviation of the width."""
+    area: float | None = None
+    """Area of the surface inside the outline, in the square of `length_unit`."""
+    area_sigma: float | None = None
+    """Standard deviation of the area."""
+    length_unit: LengthUnit | None = None
+    """`mm` where a scale is known, else `model`: the unit of the model's coordinates; empty without a length."""
+    size_from: SizeFrom | None = None
+    """What the outline is known from: `mask`, or `box` for the ellipse in the box."""
 
     @property
     def moment_s(self) -> float:
@@ -192,6 +209,8 @@ class DetectionRow:
             "outcome": Outcome(row["outcome"]),
             "reason": None if reason is None else Reason(reason),
             "rung": None if method is None else PlacementMethod(method),
+            "length_unit": None if row.get("length_unit") is None else LengthUnit(row["length_unit"]),
+            "size_from": None if row.get("size_from") is None else SizeFrom(row["size_from"]),
         }
         return cls(**{**row, **enums})
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import Detection, DetectionRow
+from core.scene.size import Scale
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -87,6 +88,8 @@ class Grouped:
     """(v,) defect of every vertex; -1 = none."""
     facts: Mapping[str, Any]
     """What the rules count, for the stage's facts."""
+    scale: Scale | None = None
+    """Of the model; None while none is known."""
 
 
 class Grouping(Protocol):

@@ -12,6 +12,7 @@ from core.errors import BadInput
 from core.names import nearest
 from core.settings import groups, reading
 from core.settings.base import Group, option
+from core.settings.scale import ScaleSettings
 
 PresetName = Literal["default", "thesis", "draft"]
 PRESET_NAMES: tuple[str, ...] = get_args(PresetName)
@@ -38,6 +39,7 @@ class Settings(Group):
     mesh: groups.MeshSettings = groups.MeshSettings()
     mapping: groups.MappingSettings = groups.MappingSettings()
     timeline: groups.TimelineSettings = groups.TimelineSettings()
+    scale: ScaleSettings = ScaleSettings()
     gallery: groups.GallerySettings = groups.GallerySettings()
     compute: groups.ComputeSettings = groups.ComputeSettings()
     overrides: tuple[str, ...] = option((), "names that the user set, sorted", source="the run")

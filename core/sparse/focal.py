@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 import pycolmap
@@ -78,10 +79,20 @@ class SpanFocal:
         return self.registered_images >= ENOUGH_SHARE * self.frames
 
 
-def choose_spans(keyframes: Sequence[int], length: int, count: int, load: Load) -> list[tuple[int, ...]]:
+def choose_spans(
+    keyframes: Sequence[int], length: int, count: int, load: Load, videos: Sequence[int] | None = None
+) -> list[tuple[int, ...]]:
     """The keyframes of spans of `length` of them, the liveliest of each of `count` equal sections of the clip.
 
-    Lively is a pair of keyframes in the middle of the span that matches well and moved far in the image.
+    Lively is a pair of keyframes in the middle of the span that matches well and moved far in the image. A span lies in
+    one video: where a section has none so long, the span is the longer part of the liveliest.
+
+    Args:
+        keyframes: rising frame indices.
+        length: keyframes of a span, at most.
+        count: sections.
+        load: features of a frame.
+        videos: number of the video of every frame; None = all are of one.
     """
     n_frames = len(keyframes)
     length = min(length, n_frames)
@@ -91,9 +102,21 @@ def choose_spans(keyframes: Sequence[int], length: int, count: int, load: Load) 
         first = section * n_frames // sections
         last = max(first, (section + 1) * n_frames // sections - length)
         starts = sorted({int(start) for start in np.linspace(first, last, PROBES)})
-        best = max(starts, key=lambda start: _liveliness(start + length // 2, keyframes, load))
-        spans.append(tuple(keyframes[best : best + length]))
+        parts = [_in_one_video(keyframes[start : start + length], videos) for start in starts]
+        longest = max(len(part) for part in parts)
+        best = max(
+            (i for i, part in enumerate(parts) if len(part) == longest),
+            key=lambda i: _liveliness(starts[i] + length // 2, keyframes, load),
+        )
+        spans.append(tuple(parts[best]))
     return spans
+
+
+def _in_one_video(span: Sequence[int], videos: Sequence[int] | None) -> Sequence[int]:
+    """The longest stretch of a span that lies in one video, the first of equals."""
+    if videos is None:
+        return span
+    return max((list(group) for _, group in groupby(span, key=lambda frame: videos[frame])), key=len, default=[])
 
 
 def find_focal(

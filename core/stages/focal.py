@@ -8,6 +8,7 @@ from functools import lru_cache
 import torch
 
 from core.features.io import FrameFeatures, feature_files, read_features
+from core.io.frames import read_frames
 from core.matching.keyframes import read_keyframes
 from core.sparse.focal import choose_spans, find_focal, joined
 from core.sparse.lens import start_lens
@@ -27,7 +28,8 @@ def run(task: StageTask) -> StageResult:
     fov = float(task.args["fov_deg"])
     lens = start_lens(frames, settings.camera, fov)
     keyframes = read_keyframes(task.input("motion")).frames if task.has("motion") else range(int(frames["n_search"]))
-    spans = choose_spans(keyframes, settings.camera.focal_span, settings.camera.focal_spans, load)
+    videos = read_frames(task.input("frames")).videos
+    spans = choose_spans(keyframes, settings.camera.focal_span, settings.camera.focal_spans, load, videos)
     found = []
     for number, span in enumerate(spans):
 

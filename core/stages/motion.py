@@ -8,6 +8,7 @@ import numpy as np
 import torch
 
 from core.features.io import FrameFeatures, feature_files, read_features, strongest
+from core.io.frames import read_frames
 from core.matching.keyframes import KEYPOINTS, choose_keyframes, picture_motion, write_keyframes
 from core.stage import StageResult, StageTask
 
@@ -26,9 +27,12 @@ def run(task: StageTask) -> StageResult:
     x0, _, x1, _ = (int(value) for value in frames["crop"])
     motion = picture_motion(x1 - x0, load)
 
+    videos = read_frames(task.input("frames")).videos
+
     def reported(a: int, b: int) -> float | None:
         task.report(a, n_search, f"frames {a} and {b}")
-        return motion(a, b)
+        # Frames of two videos have nothing to do with each other, however alike they look.
+        return motion(a, b) if videos[a] == videos[b] else None
 
     found = choose_keyframes(n_search, reported)
     write_keyframes(task.out, found)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.flags import Severity
-from core.io.annotations import write_rows
+from core.io.annotations import read_detections, write_rows
 from core.io.sparse import read_model, write_cameras
 from core.io.surface import defect_glb, defect_mesh, supported_mesh
 from core.io.timeline import write_timeline
 from core.mapping.coloring import blend
+from core.measure.scale import find_scale
 from core.scene.methods import Grouping
 from core.scene.views import Views, views_of
 from core.stage import StageResult, StageTask
@@ -19,6 +20,8 @@ from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.task_key import key_of
 from core.thesis.grouping import ThesisGrouping
 from core.timeline.grouping import Start, SurfaceGrouping
+
+MM_PER_M = 1000.0
 
 
 def run(task: StageTask) -> StageResult:
@@ -35,7 +38,11 @@ def run(task: StageTask) -> StageResult:
     extra = {**mesh.extra, "defect_id": found.vertex_defect}
     colored = replace(mesh, colors=blend(mesh.colors, found.weight), extra=extra)
     write_mesh(defect_mesh(task.out), colored, world_comments(task))
-    write_glb(defect_glb(task.out), colored)
+    if found.scale is None:
+        write_glb(defect_glb(task.out), colored)
+    else:  # glTF's lengths are metres
+        in_metres = replace(colored, vertices=colored.vertices * (found.scale.value / MM_PER_M))
+        write_glb(defect_glb(task.out), in_metres, "m")
     write_cameras(task.out, views)
     task.report(4, 4, "timeline written")
     return StageResult(dict(found.facts))
@@ -47,8 +54,11 @@ def _grouping(task: StageTask, mesh: Mesh, views: Views) -> Grouping:
         return ThesisGrouping(placed, mesh, views, task.settings.timeline, task.report)
     scene, frames = open_scene_of(task)
     start = Start.after(task.facts, task.piece)
+    detections = {one.id: one for one in read_detections(task.input("annotations"))}
+    scale = find_scale(task.settings.scale, scene, frames)
+    doubts, settings = _doubts(task), task.settings.mapping
     return SurfaceGrouping(
-        placed, scene, frames, mesh, _doubts(task), start, task.settings.mapping, task.threads, task.report
+        placed, detections, scale, scene, frames, mesh, doubts, start, settings, task.threads, task.report
     )
 
 

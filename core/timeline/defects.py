@@ -17,6 +17,7 @@ from core.outputs import evidence_name
 from core.scene.defect import MODEL_UNIT, Confidence, DefectRecord, EventRow, Extent, Persistence, Sighting
 from core.scene.detection import Outcome, leading_label
 from core.scene.frame import Crop
+from core.scene.size import Size
 from core.timeline.instances import existence, fused_place, group_observations
 from core.timeline.merging import merge_alike
 from core.timeline.seen import views_of_place, visits
@@ -227,9 +228,13 @@ def _combined(own: Sequence[Observation], defect: Defect) -> float:
 
 
 def defect_records(
-    found: Found, events: Sequence[EventRow], faces: Sequence[Sequence[int]], model: int
+    found: Found,
+    events: Sequence[EventRow],
+    faces: Sequence[Sequence[int]],
+    model: int,
+    sizes: Sequence[Size] | None = None,
 ) -> list[DefectRecord]:
-    """Records of the defects; `faces` are those of the coloured mesh by defect."""
+    """Records of the defects; `faces` are those of the coloured mesh by defect, `sizes` their sizes where measured."""
     records = []
     for number, defect in enumerate(found.defects):
         own = [found.observations[k] for k in defect.members]
@@ -253,6 +258,7 @@ def defect_records(
                 frames=tuple(replace(one, detected=one.frame_index in detected) for one in defect.sightings),
                 evidence=f"gallery/{evidence_name(number)}",
                 faces=tuple(int(face) for face in faces[number]),
+                size=None if sizes is None else sizes[number],
             )
         )
     return records

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from core.mapping.coloring import coloring_radius, vertex_weights
 from core.mapping.observations import parts_rows, read_observations
 from core.mapping.scene import Scene
+from core.measure.scale import FoundScale
+from core.measure.sizes import Sizes, measure_defects
 from core.outputs import evidence_name
 from core.scene.defect import DefectRecord, EventRow
-from core.scene.detection import DetectionRow
+from core.scene.detection import Detection, DetectionRow
 from core.scene.frame import RunFrames
 from core.scene.methods import Grouped, Report
+from core.scene.size import Scale, Size, scale_fields
 from core.settings.groups import MappingSettings
 from core.stage import Facts
 from core.surface.ply import Mesh
@@ -71,6 +74,10 @@ class SurfaceGrouping:
 
     folder: Path
     """Result of the placing."""
+    detections: Mapping[int, Detection]
+    """Of the annotation file, by id."""
+    scale: FoundScale
+    """Of the model."""
     scene: Scene
     frames: RunFrames
     mesh: Mesh
@@ -89,19 +96,49 @@ class SurfaceGrouping:
         times_s = self.frames.moment_of_index
         found = find_defects(observations, self.scene, times_s, self.doubts)
         events = event_rows(found, times_s)
-        self.report(2, 4, "colouring the surface")
+        self.report(2, 4, "colouring the surface and measuring the defects")
         weight, vertex_defect = paint_defects(self.mesh, found, self.settings, self.threads)
         faces = [own.tolist() for own in faces_of_defects(self.mesh.faces, vertex_defect, len(found.defects))]
-        records = defect_records(found, events, faces, self.scene.model)
+        sizes = _in_unit(_measured(found, self.detections, self.scene), self.scale.scale)
+        records = defect_records(found, events, faces, self.scene.model, sizes.defects)
+        rows = [_with_size(one.row, sizes.detections.get(one.row.id)) for one in found.observations]
         return Grouped(
-            rows=tuple(self.start.rows([one.row for one in found.observations])),
+            rows=tuple(self.start.rows(rows)),
             events=tuple(self.start.events(events)),
             defects=tuple(self.start.records(records)),
             confidences=tuple(parts_rows(found.observations)),
             weight=weight,
             vertex_defect=self.start.vertices(vertex_defect),
-            facts={"n_events": len(events), "n_defects": len(found.defects), "n_unconfirmed": found.unconfirmed},
+            facts={
+                "n_events": len(events),
+                "n_defects": len(found.defects),
+                "n_unconfirmed": found.unconfirmed,
+                "n_measured": sum(size.length is not None for size in sizes.defects),
+                "scale": scale_fields(self.scale.scale),
+                "flags": [flag.to_dict() for flag in self.scale.flags],
+            },
+            scale=self.scale.scale,
         )
+
+
+def _measured(found: Found, detections: Mapping[int, Detection], scene: Scene) -> Sizes:
+    members = [[found.observations[k] for k in defect.members] for defect in found.defects]
+    return measure_defects(members, [defect.place for defect in found.defects], detections, scene)
+
+
+def _in_unit(sizes: Sizes, scale: Scale | None) -> Sizes:
+    return Sizes(
+        tuple(size.scaled(scale) for size in sizes.defects),
+        {number: size.scaled(scale) for number, size in sizes.detections.items()},
+    )
+
+
+def _with_size(row: DetectionRow, size: Size | None) -> DetectionRow:
+    """The row with the columns of its own size, all but the depth, which no single view tells."""
+    if size is None:
+        return row
+    columns = {name: value for name, value in asdict(size.columns()).items() if not name.startswith("depth")}
+    return replace(row, **columns)
 
 
 def paint_defects(

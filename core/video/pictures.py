@@ -22,6 +22,8 @@ _MAX_NAME = 255
 _PATTERN = re.compile(r"%0?\d{0,2}d")
 _DIGITS = re.compile(r"(\d+)")
 _ZIP = b"PK\x03\x04"
+_EARLIEST = (1980, 1, 1, 0, 0, 0)
+"""The first date that a zip can hold."""
 _UNSEEN = ("__MACOSX",)
 """Folders that packers add."""
 
@@ -104,6 +106,30 @@ def digest_of_video(path: Path) -> str:
     for name in pictures.names:
         whole.update(f"{hashlib.sha256(pictures.read(name)).hexdigest()}  {name}\n".encode())
     return whole.hexdigest()
+
+
+def pack_pictures(path: Path, target: Path) -> bool:
+    """Put the pictures of a folder or a pattern into one zip, the same bytes for the same pictures on every day.
+
+    Args:
+        path: what a command names as a video.
+        target: the zip to write.
+
+    Returns:
+        False, and nothing written, where `path` is a file already.
+
+    Raises:
+        BadInput: of `find_pictures`, or a picture that cannot be read.
+    """
+    pictures = find_pictures(path)
+    if pictures is None or pictures.zipped is not None:
+        if pictures is not None:
+            pictures.close()
+        return False
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
+        for name in pictures.names:
+            archive.writestr(zipfile.ZipInfo(name, _EARLIEST), pictures.read(name))
+    return True
 
 
 def natural_key(name: str) -> tuple[Sequence[tuple[int, str]], str]:

@@ -16,7 +16,7 @@ from core.video.orientation import square_width
 from core.video.picture_reader import PictureReader
 from core.video.pictures import digest_of_video
 from core.video.soundness import Loss
-from core.video.table import FrameRow, FrameTable, VideoInfo
+from core.video.table import FrameTable, ListedFrame, VideoInfo
 
 _END_TOLERANCE_S = Fraction(1, 2)
 """Headers round, and audio ends a little apart from video; less than this at the end is no damage."""
@@ -54,7 +54,7 @@ def probe_video(
             `fps_missing`, `fps_not_needed`, an error of `core.video.pictures.find_pictures`, or a file error of
             `core.files.require_file`. Each message names cause and file.
     """
-    rows: list[FrameRow] = []
+    rows: list[ListedFrame] = []
     shape = (0, 0)
     with open_video(path, stream, fps=fps, max_pixels=max_pixels) as reader:
         for frame in reader.frames():
@@ -62,7 +62,8 @@ def probe_video(
             shape = (frame.coded.width, frame.coded.height)
             first = rows[0].pts if rows else frame.pts
             time_s = float((frame.pts - first) * reader.time_base)
-            rows.append(FrameRow(frame.index, frame.pts, time_s, frame.keyframe, hashlib.sha256(rgb.data).hexdigest()))
+            digest = hashlib.sha256(rgb.data).hexdigest()
+            rows.append(ListedFrame(frame.index, frame.pts, time_s, frame.keyframe, digest))
             if on_frame:
                 on_frame(len(rows), reader.declared_frames)
         damage = _damage(reader, rows)
@@ -116,7 +117,7 @@ def _require_frames(path: Path, n_frames: int) -> None:
         )
 
 
-def _damage(reader: VideoReader | PictureReader, rows: Sequence[FrameRow]) -> list[str]:
+def _damage(reader: VideoReader | PictureReader, rows: Sequence[ListedFrame]) -> list[str]:
     """What is wrong with the file, in words and with its place; empty for a sound one."""
     damage = [*reader.faults, *(_lost(loss, rows) for loss in reader.losses[:_MAX_PLACES])]
     further = reader.losses[_MAX_PLACES:]
@@ -130,14 +131,14 @@ def _damage(reader: VideoReader | PictureReader, rows: Sequence[FrameRow]) -> li
     return damage
 
 
-def _lost(loss: Loss, rows: Sequence[FrameRow]) -> str:
+def _lost(loss: Loss, rows: Sequence[ListedFrame]) -> str:
     last = loss.after - 1
     frames = "1 frame" if loss.frames == 1 else f"{loss.frames} frames"
     place = f"after frame {last} at {rows[last].time_s:.3f} s" if last >= 0 else "before the first frame"
     return f"{frames} lost {place} ({', '.join(loss.causes)})"
 
 
-def _average_rate(reader: VideoReader | PictureReader, rows: Sequence[FrameRow]) -> Fraction:
+def _average_rate(reader: VideoReader | PictureReader, rows: Sequence[ListedFrame]) -> Fraction:
     """Frames per second: the container's figure where the frames bear it out, else that of the frames.
 
     Containers round their times, so their own figure is the better one for a constant rate; for a cut or

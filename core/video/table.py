@@ -113,8 +113,8 @@ def _read_info(folder: Path) -> VideoInfo:
 
 
 @dataclass(frozen=True)
-class FrameRow:
-    """One decoded frame of the video."""
+class ListedFrame:
+    """A row of the table: one decoded frame of the video."""
 
     index: int
     pts: int
@@ -130,7 +130,7 @@ class FrameTable:
     """A video's facts and all its frames in presentation order, pts strictly increasing."""
 
     info: VideoInfo
-    rows: tuple[FrameRow, ...]
+    rows: tuple[ListedFrame, ...]
 
     @cached_property
     def _pts(self) -> list[int]:
@@ -170,7 +170,7 @@ class FrameTable:
         info = _read_info(folder)
         with (folder / _TABLE).open(newline="", encoding="utf-8") as stream:
             rows = tuple(
-                FrameRow(int(r["index"]), int(r["pts"]), float(r["time_s"]), r["keyframe"] == "1", r["sha256"])
+                ListedFrame(int(r["index"]), int(r["pts"]), float(r["time_s"]), r["keyframe"] == "1", r["sha256"])
                 for r in csv.DictReader(stream)
             )
         if len(rows) != info.n_frames:

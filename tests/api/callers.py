@@ -28,6 +28,8 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("GET", "/v1/inspections"): Scope.READ,
     ("GET", _ONE): Scope.READ,
     ("GET", f"{_ONE}/stages"): Scope.READ,
+    ("GET", f"{_ONE}/events"): Scope.READ,
+    ("GET", "/v1/events"): Scope.READ,
     ("GET", f"{_ONE}/logs"): Scope.READ,
     ("GET", f"{_ONE}/cases"): Scope.READ,
     ("GET", f"{_ONE}/cases/{{name}}"): Scope.READ,
@@ -45,6 +47,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("HEAD", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
     ("PATCH", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
     ("POST", "/v1/inspections"): Scope.SUBMIT,
+    ("PATCH", _ONE): Scope.SUBMIT,
     ("POST", f"{_ONE}/retry"): Scope.SUBMIT,
     ("POST", f"{_ONE}/cancel"): Scope.SUBMIT,
     ("GET", "/v1/session"): ANY,
@@ -71,6 +74,7 @@ HIDDEN = {("HEAD", f"{_ONE}/artifacts/{{path}}")}
 OF_AN_ACCOUNT = ("{inspection_id}", "{upload_id}", "{key_id}", "{account_id}")
 BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/v1/inspections"): {"json": {"video_upload": "0" * 32}},
+    ("PATCH", _ONE): {"json": {"label": "renamed"}},
     ("POST", "/v1/keys"): {"json": {"name": "another", "scopes": ["manage"]}},
     ("POST", "/v1/accounts"): {"json": {"id": "new"}},
     ("PATCH", "/v1/accounts/{account_id}"): {"json": {"name": "renamed"}},

@@ -26,9 +26,11 @@ from store.db import Database
 from store.factory import open_artifacts, open_database
 from store.keys import Keys
 from store.models import Artifact, Inspection
+from store.publishing import Publishing
 from store.records import InputFiles
 from store.settings import DeploymentSettings
 from store.tables import replace_rows
+from tests.databases import put_new_tables
 from tests.store.small_plan import GRAPH, result_for
 
 ROOT = Path(__file__).parents[2]
@@ -101,6 +103,13 @@ class Backend:
             published = update(Inspection).where(Inspection.id == inspection_id)
             session.execute(published.values(published=Inspection.attempt))
 
+    def finish(self, inspection_id: str) -> None:
+        """Publish it without files, as a publisher does."""
+        publishing = Publishing(self.db)
+        ticket = publishing._take(inspection_id, "publisher")
+        assert ticket is not None
+        assert publishing.finish(ticket, [], {})
+
     def _artifact(self, inspection_id: str, path: str, key: str, size: int, sha256: str) -> None:
         media_type = "application/json" if path.endswith(".json") else "application/octet-stream"
         with self.db.write() as session:
@@ -121,6 +130,7 @@ class Backend:
 def backend(tmp_path: Path) -> Iterator[Backend]:
     settings = DeploymentSettings(data_dir=tmp_path / "data", reserve_bytes=0)
     woken: list[str] = []
+    put_new_tables(settings.folder("bladeatlas.db"))
     db, artifacts = open_database(settings), open_artifacts(settings)
     services = make_services(settings, db, artifacts, wake=woken.append, graph=GRAPH)
     yield Backend(services, woken)

@@ -62,13 +62,17 @@ def test_probe_and_check_say_that_a_film_is_interlaced(capsys: pytest.CaptureFix
     assert "video: interlaced: 48 of 48 frames" in said(capsys, "check", str(tmp_path / "a.json"), "s480i.mp4")
 
 
-@pytest.mark.parametrize("video", ["gpb1080.mp4", "m96.avi", "m96_drop15.avi"])
-def test_probe_has_nothing_to_say_of_ordinary_films(video: str, capsys: pytest.CaptureFixture[str]) -> None:
-    found = as_json(capsys, "probe", video)
-    wanted = {"gpb1080.mp4": (900, "30/1"), "m96.avi": (96, "12/1"), "m96_drop15.avi": (90, None)}[video]
-    assert found["n_frames"] == wanted[0]
-    assert wanted[1] in (None, found["average_rate"])
-    assert said(capsys, "probe", video).count("\n") == 3
+@pytest.mark.parametrize(
+    ("video", "frames", "rate"),
+    [("gpb1080.mp4", 900, "30 frames/s"), ("m96.avi", 96, "12 frames/s"), ("m96_drop15.avi", 90, "frames/s")],
+)
+def test_probe_has_nothing_to_say_of_ordinary_films(
+    video: str, frames: int, rate: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = said(capsys, "probe", video)
+    assert text.splitlines()[0].endswith(f", {frames} frames")
+    assert f" {rate} on average\n" in text
+    assert text.count("\n") == 3
 
 
 def test_a_rate_can_be_told(capsys: pytest.CaptureFixture[str]) -> None:

@@ -157,3 +157,13 @@ def test_descriptions_cover_every_option_and_preset() -> None:
         settings = make_settings(preset).model_dump(mode="json")
         group, leaf = "frames", "count"
         assert described["frames.count"].value(preset) == settings[group][leaf]
+
+
+def test_metadata_of_the_file_is_names_and_texts(tmp_path: Path) -> None:
+    file = tmp_path / "p.json"
+    file.write_text(json.dumps({"metadata": {"engine_serial": "V1", "inspector": ""}}))
+    assert parameters.read_parameters(file).metadata == {"engine_serial": "V1"}
+    for wrong in (["a"], {"A": "x"}, {"a\n": "x"}, {"a": 1}, {"a": "x" * 257}, {f"n{i}": "x" for i in range(33)}):
+        file.write_text(json.dumps({"metadata": wrong}))
+        with pytest.raises(BadInput, match="metadata"):
+            parameters.read_parameters(file)

@@ -7,7 +7,8 @@ import json
 
 from rich.console import Console
 
-from cli.progress import PLAIN_INTERVAL_S, JsonDisplay, LiveDisplay, PlainDisplay, duration
+from cli.progress import PLAIN_INTERVAL_S, JsonDisplay, LiveDisplay, PlainDisplay
+from cli.terminal import duration
 from worker.events import Event, EventKind
 
 EVENTS = [

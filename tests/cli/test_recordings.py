@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 from cli.arguments import parser
-from cli.recordings import paired, recordings_of
+from cli.recordings import as_files, paired, recordings_of
 from core.errors import BadInput
+from core.video.pictures import find_pictures
 from core.videos import MAX_VIDEOS, Recording
 from tests.core.making_videos import every_ms, make_video
 
@@ -57,3 +60,29 @@ def test_commands_take_them(command: list[str], tmp_path: Path) -> None:
         assert second.annotations.read_bytes().startswith(b"PK"), "a folder is packed"
         packed = second.annotations
     assert not packed.exists()
+
+
+def test_pictures_are_packed_for_a_server_and_stay_the_same_video(tmp_path: Path) -> None:
+    film = make_video(tmp_path / "film.mp4", every_ms(40, 4))
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    for number in (1, 2, 10):
+        cv2.imwrite(str(folder / f"{number}.png"), np.full((48, 64, 3), 20 * number, np.uint8))
+    (folder / "notes.txt").write_text("no picture")
+    with as_files([Recording(film), Recording(folder, NOTES), Recording(folder / "%d.png")]) as sent:
+        assert sent[0] == Recording(film)
+        assert (sent[1].annotations, sent[1].video.name) == (NOTES, "frames.zip")
+        assert sent[1].video.read_bytes() == sent[2].video.read_bytes()
+        with find_pictures(sent[1].video) or pytest.fail("the zip holds no pictures") as zipped:
+            assert zipped.names == ("1.png", "2.png", "10.png")
+            assert [zipped.read(name) for name in zipped.names] == [
+                (folder / name).read_bytes() for name in zipped.names
+            ]
+        packed = sent[1].video
+    assert not packed.exists()
+
+
+def test_a_folder_without_pictures_is_named_before_anything_is_sent(tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(BadInput, match=r"'empty'.*without pictures"), as_files([Recording(tmp_path / "empty")]):
+        pass

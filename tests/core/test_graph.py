@@ -61,6 +61,29 @@ def test_chunks_cover_every_frame_and_view_once() -> None:
     ]
 
 
+def test_a_stage_waits_for_everything_that_it_joins() -> None:
+    tasks = {task.key: task for task in expand(make_settings(options={"compute.chunk_views": 40}), DENSE)}
+
+    def of(stage: str) -> set[str]:
+        return {key for key, task in tasks.items() if task.stage == stage}
+
+    assert set(tasks["fuse"].depends) == {"undistort", *of("geometric")}
+    assert set(tasks["camera"].depends) == {"frames", *of("focal")}
+    assert set(tasks["graph"].depends) >= {*of("features"), *of("matches"), "bridge", "camera"}
+    for key in of("geometric"):
+        assert set(tasks[key].depends) == {"undistort", *of("depth")}
+
+
+def test_a_start_that_finds_no_lens_stops_nothing() -> None:
+    tasks = {task.key: task for task in expand(make_settings(), DENSE)}
+    starts = [task for task in tasks.values() if task.stage == "focal"]
+    assert len(starts) == len(make_settings().camera.fov_starts_deg)
+    assert all(task.optional and task.key == f"focal/{task.args['fov_deg']:05.1f}" for task in starts)
+    assert all({"frames", "motion"} < set(task.depends) for task in starts)
+    for stage in ("camera", "features", "matches", "graph", "depth", "fuse", "mesh"):
+        assert not any(task.optional for task in tasks.values() if task.stage == stage), stage
+
+
 def test_the_plan_only_grows() -> None:
     good: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, CHOSEN, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
     for known in (good, [SEARCHED, VETOED, PRUNED, AFTER_VETO]):

@@ -4,23 +4,34 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
 import pytest
 
 from core.flags import Flag, Severity
+from core.gallery.defects import defect_lines
+from core.gallery.page import gallery_page
+from core.gallery.palette import label_colors
+from core.io.annotations import read_rows
+from core.io.timeline import read_defects, read_events
 from core.mapping.observations import read_observations
+from core.report.build import build_report, write_tables
+from core.report.record import RunRecord, RunTables, TaskRecord
 from core.settings import make_settings
 from core.stage import Facts, StageTask
 from core.stages import map_defects, timeline
+from core.states import RunState, TaskState
 from core.surface.ply import Mesh, read_mesh, write_cloud, write_mesh
 from core.videos import Recording
 from core.viewgraph import make_table, write_database, write_table
 from tests.core import making_plates as plates
 from tests.core.making_plates import NEAR, detection
+from tests.core.making_rows import run_frames
 
 A, B = (-0.8, 0.2, NEAR), (-1.4, -0.3, NEAR)
 FRAMES = range(8)
@@ -58,7 +69,11 @@ def _write(path: Path, value: object) -> None:
 
 
 def run_both(
-    inputs: Path, out: Path, codes: tuple[str, ...] = (), told: dict[str, list[tuple[float, str]]] | None = None
+    inputs: Path,
+    out: Path,
+    codes: tuple[str, ...] = (),
+    told: dict[str, list[tuple[float, str]]] | None = None,
+    options: dict[str, object] | None = None,
 ) -> dict[str, Facts]:
     """With warnings of the checks of the model; what the stages report goes to `told`."""
     folders = {path.name: path for path in inputs.iterdir()}
@@ -66,7 +81,7 @@ def run_both(
     for name, stage in (("map_defects", map_defects), ("timeline", timeline)):
         folders[name] = out / name
         folders[name].mkdir(parents=True)
-        settings = make_settings("default")
+        settings = make_settings("default", options or {})
         task = StageTask(name, {}, settings, dict(folders), dict(facts), (Recording(inputs / "none"),), folders[name])
         own: list[tuple[float, str]] = [] if told is None else told.setdefault(name, [])
 
@@ -132,3 +147,76 @@ def test_a_stage_says_what_it_does_and_how_far_it_is(inputs: Path, tmp_path: Pat
         assert len(shares) == 4
         assert list(shares) == sorted(set(shares)), "every step is further than the one before"
         assert len(set(messages) - {""}) == 4, "and has its own words"
+
+
+def every_text(folder: Path) -> str:
+    """Everything that a stage wrote which people or programs read as text; of GLB its JSON."""
+    found = []
+    for path in sorted(folder.iterdir()):
+        if path.suffix == ".json":
+            found.append(path.read_text(encoding="utf-8"))
+        elif path.suffix == ".glb":
+            found.append(json.dumps(glb_document(path)))
+        elif path.suffix == ".ply":
+            found.append(path.read_bytes().split(b"end_header")[0].decode())
+    return "\n".join(found)
+
+
+def glb_document(path: Path) -> Any:
+    data = path.read_bytes()
+    return json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+
+
+def published(out: Path, facts: dict[str, Facts]) -> str:
+    """CSV and JSON of the report of these results, and the page of the gallery."""
+    rows, records = read_rows(out / "timeline"), read_defects(out / "timeline")
+    tasks = [TaskRecord(name, TaskState.SUCCEEDED, facts=facts[name]) for name in ("extend", "map_defects", "timeline")]
+    frames = run_frames(8, 0.1)
+    tables = RunTables(frames=frames, mapped_rows=rows, timeline=read_events(out / "timeline"), defects=records)
+    record = RunRecord(make_settings("default"), RunState.SUCCEEDED, tasks, tables)
+    names = write_tables(build_report(record), out / "report")
+    lines = defect_lines(records, read_events(out / "timeline"), frames)
+    texts = [(out / "report" / name).read_text(encoding="utf-8") for name in names if name.startswith("mapping/")]
+    summary = json.loads((out / "report" / "summary.json").read_text(encoding="utf-8"))
+    del summary["parameters"]  # names of options have a unit: scale.length_mm
+    page = gallery_page([], 0, rows, lines, label_colors([row.label for row in rows]), [], 1)
+    return "\n".join([*texts, json.dumps(summary), page])
+
+
+MILLIMETRE = re.compile(r"(?<![A-Za-z0-9])mm(?![A-Za-z0-9])|millimet", re.IGNORECASE)
+
+
+def test_without_a_scale_no_millimetre_is_written_anywhere(inputs: Path, tmp_path: Path) -> None:
+    facts = run_both(inputs, tmp_path)
+    text = every_text(tmp_path / "timeline") + published(tmp_path, facts)
+    assert not MILLIMETRE.search(text)
+    assert "model units" in text
+    records = read_defects(tmp_path / "timeline")
+    assert all(record.size is not None and record.size.length is not None for record in records)
+    assert {record.to_dict()["length_unit"] for record in records} == {"model"}
+    document = glb_document(tmp_path / "timeline" / "mesh_defects.glb")
+    assert document["asset"]["extras"]["unit"] == "model"
+
+
+def test_with_a_scale_sizes_are_millimetres_and_the_glb_is_in_metres(inputs: Path, tmp_path: Path) -> None:
+    ends = [plates.pixel((x, 0.0, NEAR), 2) + np.array([plates.CROP.x0, plates.CROP.y0]) for x in (-1.5, -0.5)]
+    points = tuple(float(value) for end in ends for value in end)
+    options = {"scale.points": points, "scale.length_mm": 12.0, "scale.time_s": 0.2}
+    bare, told = run_both(inputs, tmp_path / "bare"), run_both(inputs, tmp_path / "told", options=options)
+    assert bare["timeline"]["scale"]["value"] is None
+    scale = told["timeline"]["scale"]
+    assert (scale["unit"], scale["source"]) == ("mm", "points")
+    assert scale["value"] == pytest.approx(12.0, rel=0.01)
+    text = every_text(tmp_path / "told" / "timeline") + published(tmp_path / "told", told)
+    assert MILLIMETRE.search(text)
+    one, two = (read_defects(tmp_path / name / "timeline") for name in ("bare", "told"))
+    for before, after in zip(one, two, strict=True):
+        first, second = before.to_dict(), after.to_dict()
+        assert second["length"] == pytest.approx(scale["value"] * first["length"])
+        assert second["area"] == pytest.approx(scale["value"] ** 2 * first["area"])
+        assert second["size_sigma"]["length"]["scale"] > 0
+        assert second["centroid"] == first["centroid"]
+    documents = [glb_document(tmp_path / name / "timeline" / "mesh_defects.glb") for name in ("bare", "told")]
+    small, large = (np.array(document["accessors"][0]["max"]) for document in documents)
+    assert large == pytest.approx(small * scale["value"] / 1000.0, rel=1e-5)
+    assert documents[1]["asset"]["extras"]["unit"] == "m"

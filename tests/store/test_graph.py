@@ -7,9 +7,10 @@ from dataclasses import replace
 import pytest
 
 import store.graph
+from core.errors import BadInput
 from core.graph import TaskSpec
 from core.settings import make_settings
-from store.graph import CORE_GRAPH
+from store.graph import CORE_GRAPH, load_graph
 from store.records import InputFiles
 
 
@@ -36,3 +37,14 @@ def test_every_video_is_in_the_name_of_what_reads_videos_and_one_alone_as_ever()
 
     assert len({name(a), name(b), name(a, b), name(b, a)}) == 4
     assert name(a, b) == name(replace(a, video="elsewhere"), b)
+
+
+@pytest.mark.parametrize("name", ["store.graph:Graph", "store.graph:nothing", "no.module:graph", ""])
+def test_a_wrong_graph_is_named_with_the_setting_that_says_it(name: str) -> None:
+    with pytest.raises(BadInput, match="stage graph") as caught:
+        load_graph(name)
+    assert caught.value.where == "BLADEATLAS_GRAPH"
+
+
+def test_the_right_graph_is_found() -> None:
+    assert load_graph("store.graph:CORE_GRAPH") is CORE_GRAPH

@@ -323,7 +323,8 @@ def test_rows_are_written_with_the_task_that_made_them_and_come_along_when_reuse
     for _ in range(2):
         with plan.db.read() as session:
             columns = CaseRow.__table__.c
-            assert session.execute(select(columns.points3D, columns.seconds)).all() == [(50, 1.5)]
+            of_case = select(columns.points3D, columns.seconds, columns.selected, columns.vetoed)
+            assert session.execute(of_case).all() == [(50, 1.5, 0, 0)]  # until the reducer chooses
             assert [row.name for row in session.scalars(select(MetricRow))] == ["part/0.points3D"]
             assert [(row.id, row.task_key) for row in session.scalars(select(DetectionRow))] == [(0, "part/1")]
         inspections(plan).reopen(ID, FILES, make_settings())

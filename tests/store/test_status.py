@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
+from typing import Any
 
 import pytest
 from sqlalchemy import update
@@ -21,7 +22,7 @@ from store.timings import learn_timings, plan_eta
 from tests.store.small_plan import FILES, GRAPH, result_for
 
 
-def create(db: Database, name: str, **more: object) -> None:
+def create(db: Database, name: str, **more: Any) -> None:
     with db.write() as session:
         Inspections(db, GRAPH).create_in(session, name, FILES, make_settings(), "", **more)
 

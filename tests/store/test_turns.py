@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from typing import Any
 
 from core.settings import make_settings
 from core.states import InspectionState
@@ -16,7 +17,7 @@ from store.turns import queued_in_turn
 from tests.store.small_plan import GRAPH, result_for
 
 
-def create(db: Database, name: str, owner: str, **more: object) -> str:
+def create(db: Database, name: str, owner: str, **more: Any) -> str:
     """An inspection of a video of its own, so that none takes up another's results."""
     files = InputFiles("/v.mp4", hashlib.sha256(name.encode()).hexdigest(), None, None)
     with db.write() as session:

@@ -123,11 +123,14 @@ def _behave(task: StageTask) -> None:
         ballast = bytearray(wish["megabytes"] << 20)
         _pass_time(task, 5.0, True)
         del ballast
+    if "reads" in wish:
+        getattr(task.settings, wish["reads"])
     errors: dict[str, Exception] = {
         "no_reconstruction": NoReconstruction("nothing moves", code="no_reconstruction"),
         "stage": StageFailed("no surface"),
         "memory": MemoryError(),
         "disk": OSError(errno.ENOSPC, "No space left on device"),
+        "library": RuntimeError("the matrix is singular"),
         "bug": ZeroDivisionError("division by zero"),
     }
     if "raise" in wish:

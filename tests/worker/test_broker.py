@@ -12,8 +12,10 @@ import pytest
 from redis import Redis
 from sqlalchemy import select
 
+from store.announcing import Announcements
 from store.files import ArtifactStore
 from store.models import Inspection
+from store.monitoring import WorkerRegistry
 from store.plan import Plan
 from tests.databases import database
 from tests.store.object_store import new_bucket, options
@@ -69,10 +71,10 @@ def test_jobs_of_two_workers_end_and_are_published(place: Deployment) -> None:
 
 def test_every_message_twice_and_a_broker_without_memory_change_nothing(place: Deployment, broker: Redis) -> None:
     place.create("one", all={"sleep_s": 0.5})
-    queue = TaskQueue(place.environment["BLADEATLAS_BROKER_URL"], 3600)
-    plan = Plan(place.db, GRAPH)
-    assert queue.top_up(plan) == 1
-    assert queue.top_up(plan) == 0
+    WorkerRegistry(place.db).seen("one that is gone soon", ["cpu"], 1)
+    queue, announcements = TaskQueue(place.environment["BLADEATLAS_BROKER_URL"], 3600), Announcements(place.db)
+    assert queue.announce(announcements) == 1
+    assert queue.announce(announcements) == 0
     waiting = broker.lrange("bladeatlas.cpu", 0, -1)
     broker.rpush("bladeatlas.cpu", *waiting, *waiting)
     workers(place, 2)

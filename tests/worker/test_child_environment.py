@@ -45,7 +45,7 @@ def test_a_stage_has_no_credential(server: Server, monkeypatch: pytest.MonkeyPat
     runner = TaskRunner(
         plan, ResultFolders(hidden / "results"), TaskLogs(hidden / "logs"), Notes(), max_frame_pixels=12345
     )
-    assert runner.run(lease) == "succeeded"
+    assert runner.run(lease).outcome == "succeeded"
     told = json.loads((server.place.video.parent / "told.json").read_text())
     assert told["environment"]["PATH"], "it does see what is allowed"
     assert told["document"]["max_frame_pixels"] == 12345

@@ -6,6 +6,7 @@ import json
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -85,9 +86,10 @@ def test_the_callers_names_stand_beside_the_result_and_cost_no_work(place: Workp
     place.run(names=Names("stage 2", "WO-1187"))
     place.started()
     for label in ("stage 2", "stage 3"):
-        place.run(names=Names(label, "WO-1187"))
+        place.run(names=Names(label, "WO-1187", {"module": label}))
         summary = json.loads((place.out / "summary.json").read_text())
         assert (summary["label"], summary["external_id"]) == (label, "WO-1187")
+        assert summary["metadata"] == {"module": label}
     assert place.started() == []
 
 
@@ -237,13 +239,30 @@ def test_a_part_that_always_kills_its_process_is_done_without(place: Workplace) 
     assert facts(place, "join")["parts"] == 1
 
 
-def test_a_full_disk_in_an_optional_part_stops_the_run(place: Workplace) -> None:
-    place.control(part__001={"raise": "disk"})
+@pytest.mark.parametrize(
+    ("wish", "code", "message"),
+    [
+        ({"raise": "disk"}, "disk_full", "No space left"),
+        ({"reads": "mesh"}, "internal", "UndeclaredOption: the stage does not declare that it reads Settings.mesh"),
+    ],
+)
+def test_a_full_disk_or_a_mistake_in_the_code_of_an_optional_part_stops_the_run(
+    place: Workplace, wish: dict[str, Any], code: str, message: str
+) -> None:
+    place.control(part__001=wish)
     outcome = place.run()
-    assert outcome.state == "failed"
+    assert (outcome.state, outcome.failed_stage) == ("failed", "part")
     assert outcome.error is not None
-    assert outcome.error.code == "disk_full"
+    assert outcome.error.code == code
+    assert message.lower() in outcome.error.message.lower()
     assert "join" not in place.started()
+
+
+def test_what_a_library_cannot_do_in_an_optional_part_costs_that_part_alone(place: Workplace) -> None:
+    place.control(part__001={"raise": "library"})
+    outcome = place.run()
+    assert outcome.state == "succeeded"
+    assert "join" in place.started()
 
 
 def test_a_failure_with_something_to_serve_is_partial(place: Workplace) -> None:

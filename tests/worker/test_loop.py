@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
 
 from tests.worker.deployment import wait_for
 from worker.loop import ConcurrencyLimit
 
 
 class Work:
-    """Tasks that wait to be let go; notes what ran and how many at once."""
+    """Tasks that wait to be let go; notes what each start was told, and how many ran at once."""
 
     def __init__(self, tasks: int) -> None:
         self.left = tasks
-        self.ran: list[tuple[str, ...]] = []
+        self.ran: list[object] = []
         self.running = self.most = 0
         self.gate = threading.Event()
         self._lock = threading.Lock()
 
-    def run_next(self, queues: Sequence[str]) -> bool:
+    def run_next(self, unheard_s: float | None) -> bool:
+        return self._run(unheard_s)
+
+    def run_named(self) -> str | None:
+        return "done" if self._run("named") else None
+
+    def _run(self, told: object) -> bool:
         with self._lock:
             if not self.left:
                 return False
@@ -30,31 +35,31 @@ class Work:
         self.gate.wait(10.0)
         with self._lock:
             self.running -= 1
-            self.ran.append(tuple(queues))
+            self.ran.append(told)
         return True
 
 
-def test_a_worker_without_messages_does_all_there_is() -> None:
+def test_a_worker_without_messages_begins_with_what_nobody_heard_of_and_does_all_there_is() -> None:
     work = Work(3)
     work.gate.set()
-    ConcurrencyLimit(1, work.run_next, threading.Event(), quiet_s=0.0).without_message(("cpu", "gpu"))
-    assert work.ran == [("cpu", "gpu")] * 3
+    ConcurrencyLimit(1, threading.Event(), quiet_s=0.0).without_message(work.run_next)
+    assert work.ran == [0.0, None, None]
 
 
 def test_a_worker_that_just_heard_a_message_leaves_the_rest_to_the_broker() -> None:
     work = Work(3)
     work.gate.set()
-    limit = ConcurrencyLimit(1, work.run_next, threading.Event(), quiet_s=60.0)
-    limit.on_message("cpu")
-    limit.without_message(("cpu",))
-    assert work.ran == [("cpu",)]
+    limit = ConcurrencyLimit(1, threading.Event(), quiet_s=60.0)
+    assert limit.on_message(work.run_named) == "done"
+    limit.without_message(work.run_next)
+    assert work.ran == ["named"]
 
 
 def test_messages_and_own_looks_share_the_limit() -> None:
     work = Work(4)
-    limit = ConcurrencyLimit(1, work.run_next, threading.Event(), quiet_s=0.0)
-    threads = [threading.Thread(target=limit.on_message, args=("cpu",)) for _ in range(2)]
-    threads += [threading.Thread(target=limit.without_message, args=(("cpu",),))]
+    limit = ConcurrencyLimit(1, threading.Event(), quiet_s=0.0)
+    threads = [threading.Thread(target=limit.on_message, args=(work.run_named,)) for _ in range(2)]
+    threads += [threading.Thread(target=limit.without_message, args=(work.run_next,))]
     for thread in threads:
         thread.start()
     wait_for(lambda: work.running == 1)
@@ -68,13 +73,13 @@ def test_messages_and_own_looks_share_the_limit() -> None:
 
 def test_a_stopping_worker_starts_nothing() -> None:
     work, stopped = Work(2), threading.Event()
-    limit = ConcurrencyLimit(1, work.run_next, stopped, quiet_s=0.0)
-    first = threading.Thread(target=limit.on_message, args=("cpu",))
+    limit = ConcurrencyLimit(1, stopped, quiet_s=0.0)
+    first = threading.Thread(target=limit.on_message, args=(work.run_named,))
     first.start()
     wait_for(lambda: work.running == 1)
     stopped.set()
-    limit.on_message("cpu")
-    limit.without_message(("cpu",))
+    assert limit.on_message(work.run_named) is None
+    limit.without_message(work.run_next)
     work.gate.set()
     first.join(10.0)
     assert len(work.ran) == 1

@@ -1,19 +1,4334 @@
-"use strict";
-(() => {
-  const { viewer } = window.BLADEATLAS;
-  const add = (parent, name, text) => {
-    const made = document.createElement(name);
-    if (text !== undefined) made.textContent = text;
-    parent.append(made);
-    return made;
-  };
-  const app = document.getElementById("app");
-  add(app, "h1", viewer.title);
-  add(app, "p", `${viewer.verdict}: ${viewer.defects.length} findings, ${viewer.detections.length} detections`);
-  if (viewer.surface_reason) add(app, "p", viewer.surface_reason);
-  const table = add(app, "table");
-  for (const one of viewer.defects) {
-    const row = add(table, "tr");
-    for (const text of [`D${one.id}`, one.label, one.size]) add(row, "td", String(text));
+(function(){"use strict";var Zs,Qe,wu,Ru,xi,Cu,Pu,Lu,Go,Js,ds,Du,Vo,Wo,Xo,Qs={},js=[],vp=/acit|ex(?:s|g|n|p|$)|rph|grid|ows|mnc|ntw|ine[ch]|zoo|^ord|itera/i,ea=Array.isArray;function ei(n,e){for(var t in e)n[t]=e[t];return n}function $o(n){n&&n.parentNode&&n.parentNode.removeChild(n)}function Iu(n,e,t){var i,r,s,a={};for(s in e)s=="key"?i=e[s]:s=="ref"?r=e[s]:a[s]=e[s];if(arguments.length>2&&(a.children=arguments.length>3?Zs.call(arguments,2):t),typeof n=="function"&&n.defaultProps!=null)for(s in n.defaultProps)a[s]===void 0&&(a[s]=n.defaultProps[s]);return ta(n,a,i,r,null)}function ta(n,e,t,i,r){var s={type:n,props:e,key:t,ref:i,__k:null,__:null,__b:0,__e:null,__c:null,constructor:void 0,__v:r??++wu,__i:-1,__u:0};return r==null&&Qe.vnode!=null&&Qe.vnode(s),s}function bt(n){return n.children}function hs(n,e){this.props=n,this.context=e}function qi(n,e){if(e==null)return n.__?qi(n.__,n.__i+1):null;for(var t;e<n.__k.length;e++)if((t=n.__k[e])!=null&&t.__e!=null)return t.__e;return typeof n.type=="function"?qi(n):null}function xp(n){if(n.__P&&n.__d){var e=n.__v,t=e.__e,i=[],r=[],s=ei({},e);s.__v=e.__v+1,Qe.vnode&&Qe.vnode(s),qo(n.__P,s,e,n.__n,n.__P.namespaceURI,32&e.__u?[t]:null,i,t??qi(e),!!(32&e.__u),r),s.__v=e.__v,s.__.__k[s.__i]=s,Hu(i,s,r),e.__e=e.__=null,s.__e!=t&&Nu(s)}}function Nu(n){if((n=n.__)!=null&&n.__c!=null)return n.__e=n.__c.base=null,n.__k.some(function(e){if(e!=null&&e.__e!=null)return n.__e=n.__c.base=e.__e}),Nu(n)}function Uu(n){(!n.__d&&(n.__d=!0)&&xi.push(n)&&!na.__r++||Cu!=Qe.debounceRendering)&&((Cu=Qe.debounceRendering)||Pu)(na)}function na(){try{for(var n,e=1;xi.length;)xi.length>e&&xi.sort(Lu),n=xi.shift(),e=xi.length,xp(n)}finally{xi.length=na.__r=0}}function Fu(n,e,t,i,r,s,a,o,l,c,f){var d,u,h,g,x,m,p=i&&i.__k||js,v=e.length;for(l=Sp(t,e,p,l,v),d=0;d<v;d++)(h=t.__k[d])!=null&&(u=h.__i!=-1&&p[h.__i]||Qs,h.__i=d,m=qo(n,h,u,r,s,a,o,l,c,f),g=h.__e,h.ref&&u.ref!=h.ref&&(u.ref&&Yo(u.ref,null,h),f.push(h.ref,h.__c||g,h)),x==null&&g!=null&&(x=g),4&h.__u?(l=Ou(h,l,n),u.__e&&(u.__e=null)):typeof h.type=="function"&&m!==void 0?l=m:g&&(l=g.nextSibling),h.__u&=-7);return t.__e=x,l}function Sp(n,e,t,i,r){var s,a,o,l,c,f=t.length,d=f,u=0;for(n.__k=new Array(r),s=0;s<r;s++)(a=e[s])!=null&&typeof a!="boolean"&&typeof a!="function"?(typeof a=="string"||typeof a=="number"||typeof a=="bigint"||a.constructor==String?a=n.__k[s]=ta(null,a,null,null,null):ea(a)?a=n.__k[s]=ta(bt,{children:a},null,null,null):a.constructor===void 0&&a.__b>0?a=n.__k[s]=ta(a.type,a.props,a.key,a.ref?a.ref:null,a.__v):n.__k[s]=a,l=s+u,a.__=n,a.__b=n.__b+1,o=null,(c=a.__i=Mp(a,t,l,d))!=-1&&(d--,(o=t[c])&&(o.__u|=2)),o==null||o.__v==null?(c==-1&&(r>f?u--:r<f&&u++),typeof a.type!="function"&&(a.__u|=4)):c!=l&&(c==l-1?u--:c==l+1?u++:(c>l?u--:u++,a.__u|=4))):n.__k[s]=null;if(d)for(s=0;s<f;s++)(o=t[s])!=null&&(2&o.__u)==0&&(o.__e==i&&(i=qi(o)),Vu(o,o));return i}function Ou(n,e,t){var i,r;if(typeof n.type=="function"){for(i=n.__k,r=0;i&&r<i.length;r++)i[r]&&(i[r].__=n,e=Ou(i[r],e,t));return e}n.__e!=e&&(e&&n.type&&!e.parentNode&&(e=qi(n)),e=t.insertBefore(n.__e,e||null));do e=e&&e.nextSibling;while(e!=null&&e.nodeType==8);return e}function Mp(n,e,t,i){var r,s,a,o=n.key,l=n.type,c=e[t],f=c!=null&&(2&c.__u)==0;if(c===null&&o==null||f&&o==c.key&&l==c.type)return t;if(i>(f?1:0)){for(r=t-1,s=t+1;r>=0||s<e.length;)if((c=e[a=r>=0?r--:s++])!=null&&(2&c.__u)==0&&o==c.key&&l==c.type)return a}return-1}function Bu(n,e,t){e[0]=="-"?n.setProperty(e,t??""):n[e]=t==null?"":typeof t!="number"||vp.test(e)?t:t+"px"}function ia(n,e,t,i,r){var s,a;e:if(e=="style")if(typeof t=="string")n.style.cssText=t;else{if(typeof i=="string"&&(n.style.cssText=i=""),i)for(e in i)t&&e in t||Bu(n.style,e,"");if(t)for(e in t)i&&t[e]==i[e]||Bu(n.style,e,t[e])}else if(e[0]=="o"&&e[1]=="n")s=e!=(e=e.replace(Du,"$1")),a=e.toLowerCase(),e=a in n||e=="onFocusOut"||e=="onFocusIn"?a.slice(2):e.slice(2),n.l||(n.l={}),n.l[e+s]=t,t?i?t[ds]=i[ds]:(t[ds]=Vo,n.addEventListener(e,s?Xo:Wo,s)):n.removeEventListener(e,s?Xo:Wo,s);else{if(r=="http://www.w3.org/2000/svg")e=e.replace(/xlink(H|:h)/,"h").replace(/sName$/,"s");else if(e!="width"&&e!="height"&&e!="href"&&e!="list"&&e!="form"&&e!="tabIndex"&&e!="download"&&e!="rowSpan"&&e!="colSpan"&&e!="role"&&e!="popover"&&e in n)try{n[e]=t??"";break e}catch{}typeof t=="function"||(t==null||t===!1&&e[4]!="-"?n.removeAttribute(e):n.setAttribute(e,e=="popover"&&t==1?"":t))}}function ku(n){return function(e){if(this.l){var t=this.l[e.type+n];if(e[Js]==null)e[Js]=Vo++;else if(e[Js]<t[ds])return;return t(Qe.event?Qe.event(e):e)}}}function qo(n,e,t,i,r,s,a,o,l,c){var f,d,u,h,g,x,m,p,v,M,S,b,w,_,y,I,R=e.type;if(e.constructor!==void 0)return null;128&t.__u&&(l=!!(32&t.__u),s=[o=e.__e=t.__e]),(f=Qe.__b)&&f(e);e:if(typeof R=="function"){d=a.length;try{if(v=e.props,M=R.prototype&&R.prototype.render,S=(f=R.contextType)&&i[f.__c],b=f?S?S.props.value:f.__:i,t.__c?p=(u=e.__c=t.__c).__=u.__E:(M?e.__c=u=new R(v,b):(e.__c=u=new hs(v,b),u.constructor=R,u.render=bp),S&&S.sub(u),u.state||(u.state={}),u.__n=i,h=u.__d=!0,u.__h=[],u._sb=[]),M&&u.__s==null&&(u.__s=u.state),M&&R.getDerivedStateFromProps!=null&&(u.__s==u.state&&(u.__s=ei({},u.__s)),ei(u.__s,R.getDerivedStateFromProps(v,u.__s))),g=u.props,x=u.state,u.__v=e,h)M&&R.getDerivedStateFromProps==null&&u.componentWillMount!=null&&u.componentWillMount(),M&&u.componentDidMount!=null&&u.__h.push(u.componentDidMount);else{if(M&&R.getDerivedStateFromProps==null&&v!==g&&u.componentWillReceiveProps!=null&&u.componentWillReceiveProps(v,b),e.__v==t.__v||!u.__e&&u.shouldComponentUpdate!=null&&u.shouldComponentUpdate(v,u.__s,b)===!1){e.__v!=t.__v&&(u.props=v,u.state=u.__s,u.__d=!1),e.__e=t.__e,e.__k=t.__k,e.__k.some(function(P){P&&(P.__=e)}),js.push.apply(u.__h,u._sb),u._sb=[],u.__h.length&&a.push(u),o=qi(t);break e}u.componentWillUpdate!=null&&u.componentWillUpdate(v,u.__s,b),M&&u.componentDidUpdate!=null&&u.__h.push(function(){u.componentDidUpdate(g,x,m)})}if(u.context=b,u.props=v,u.__P=n,u.__e=!1,w=Qe.__r,_=0,M)u.state=u.__s,u.__d=!1,w&&w(e),f=u.render(u.props,u.state,u.context),js.push.apply(u.__h,u._sb),u._sb=[];else do u.__d=!1,w&&w(e),f=u.render(u.props,u.state,u.context),u.state=u.__s;while(u.__d&&++_<25);u.state=u.__s,u.getChildContext!=null&&(i=ei(ei({},i),u.getChildContext())),M&&!h&&u.getSnapshotBeforeUpdate!=null&&(m=u.getSnapshotBeforeUpdate(g,x)),y=f!=null&&f.type===bt&&f.key==null?Gu(f.props.children):f,o=Fu(n,ea(y)?y:[y],e,t,i,r,s,a,o,l,c),u.base=e.__e,e.__u&=-161,u.__h.length&&a.push(u),p&&(u.__E=u.__=null)}catch(P){if(a.length=d,e.__v=null,l||s!=null){if(P.then){for(e.__u|=l?160:128;o&&o.nodeType==8&&o.nextSibling;)o=o.nextSibling;s!=null&&(s[s.indexOf(o)]=null),e.__e=o}else if(s!=null)for(I=s.length;I--;)$o(s[I])}else e.__e=t.__e;e.__k==null&&(e.__k=t.__k||[]),P.then||zu(e),Qe.__e(P,e,t)}}else s==null&&e.__v==t.__v?(e.__k=t.__k,e.__e=t.__e):o=e.__e=yp(t.__e,e,t,i,r,s,a,l,c);return(f=Qe.diffed)&&f(e),128&e.__u?void 0:o}function zu(n){n&&(n.__c&&(n.__c.__e=!0),n.__k&&n.__k.some(zu))}function Hu(n,e,t){for(var i=0;i<t.length;i++)Yo(t[i],t[++i],t[++i]);Qe.__c&&Qe.__c(e,n),n.some(function(r){try{n=r.__h,r.__h=[],n.some(function(s){s.call(r)})}catch(s){Qe.__e(s,r.__v)}})}function Gu(n){return typeof n!="object"||n==null||n.__b>0?n:ea(n)?n.map(Gu):n.constructor!==void 0?null:ei({},n)}function yp(n,e,t,i,r,s,a,o,l){var c,f,d,u,h,g,x,m=t.props||Qs,p=e.props,v=e.type;if(v=="svg"?r="http://www.w3.org/2000/svg":v=="math"?r="http://www.w3.org/1998/Math/MathML":r||(r="http://www.w3.org/1999/xhtml"),s!=null){for(c=0;c<s.length;c++)if((h=s[c])&&"setAttribute"in h==!!v&&(v?h.localName==v:h.nodeType==3)){n=h,s[c]=null;break}}if(n==null){if(v==null)return document.createTextNode(p);n=document.createElementNS(r,v,p.is&&p),o&&(Qe.__m&&Qe.__m(e,s),o=!1),s=null}if(v==null)m===p||o&&n.data==p||(n.data=p);else{if(s=v=="textarea"&&p.defaultValue!=null?null:s&&Zs.call(n.childNodes),!o&&s!=null)for(m={},c=0;c<n.attributes.length;c++)m[(h=n.attributes[c]).name]=h.value;for(c in m)h=m[c],c=="dangerouslySetInnerHTML"?d=h:c=="children"||c in p||c=="value"&&"defaultValue"in p||c=="checked"&&"defaultChecked"in p||ia(n,c,null,h,r);for(c in p)h=p[c],c=="children"?u=h:c=="dangerouslySetInnerHTML"?f=h:c=="value"?g=h:c=="checked"?x=h:o&&typeof h!="function"||m[c]===h||ia(n,c,h,m[c],r);if(f)o||d&&(f.__html==d.__html||f.__html==n.innerHTML)||(n.innerHTML=f.__html),e.__k=[];else if(d&&(n.innerHTML=""),Fu(e.type=="template"?n.content:n,ea(u)?u:[u],e,t,i,v=="foreignObject"?"http://www.w3.org/1999/xhtml":r,s,a,s?s[0]:t.__k&&qi(t,0),o,l),s!=null)for(c=s.length;c--;)$o(s[c]);o&&v!="textarea"||(c="value",v=="progress"&&g==null?n.removeAttribute("value"):g!=null&&(g!==n[c]||v=="progress"&&!g||v=="option"&&g!=m[c])&&ia(n,c,g,m[c],r),c="checked",x!=null&&x!=n[c]&&ia(n,c,x,m[c],r))}return n}function Yo(n,e,t){try{if(typeof n=="function"){var i=typeof n.__u=="function";i&&n.__u(),i&&e==null||(n.__u=n(e))}else n.current=e}catch(r){Qe.__e(r,t)}}function Vu(n,e,t){var i,r;if(Qe.unmount&&Qe.unmount(n),(i=n.ref)&&(i.current&&i.current!=n.__e||Yo(i,null,e)),(i=n.__c)!=null){if(i.componentWillUnmount)try{i.componentWillUnmount()}catch(s){Qe.__e(s,e)}i.base=i.__P=i.__n=null}if(i=n.__k)for(r=0;r<i.length;r++)i[r]&&Vu(i[r],e,t||typeof n.type!="function");t||$o(n.__e),n.__c=n.__=n.__e=void 0}function bp(n,e,t){return this.constructor(n,t)}function Ep(n,e,t){var i,r,s,a;e==document&&(e=document.documentElement),Qe.__&&Qe.__(n,e),r=(i=!1)?null:e.__k,s=[],a=[],qo(e,n=e.__k=Iu(bt,null,[n]),r||Qs,Qs,e.namespaceURI,r?null:e.firstChild?Zs.call(e.childNodes):null,s,r?r.__e:e.firstChild,i,a),Hu(s,n,a),n.props.children=null}Zs=js.slice,Qe={__e:function(n,e,t,i){for(var r,s,a;e=e.__;)if((r=e.__c)&&!r.__)try{if((s=r.constructor)&&s.getDerivedStateFromError!=null&&(r.setState(s.getDerivedStateFromError(n)),a=r.__d),r.componentDidCatch!=null&&(r.componentDidCatch(n,i||{}),a=r.__d),a)return r.__E=r}catch(o){n=o}throw n}},wu=0,Ru=function(n){return n!=null&&n.constructor===void 0},hs.prototype.setState=function(n,e){var t;t=this.__s!=null&&this.__s!=this.state?this.__s:this.__s=ei({},this.state),typeof n=="function"&&(n=n(ei({},t),this.props)),n&&ei(t,n),n!=null&&this.__v&&(e&&this._sb.push(e),Uu(this))},hs.prototype.forceUpdate=function(n){this.__v&&(this.__e=!0,n&&this.__h.push(n),Uu(this))},hs.prototype.render=bt,xi=[],Pu=typeof Promise=="function"?Promise.prototype.then.bind(Promise.resolve()):setTimeout,Lu=function(n,e){return n.__v.__b-e.__v.__b},na.__r=0,Go=Math.random().toString(8),Js="__d"+Go,ds="__a"+Go,Du=/(PointerCapture)$|Capture$/i,Vo=0,Wo=ku(!1),Xo=ku(!0);var Tp=0;function A(n,e,t,i,r,s){e||(e={});var a,o,l=e;if("ref"in l)for(o in l={},e)o=="ref"?a=e[o]:l[o]=e[o];var c={type:n,props:l,key:t,ref:a,__k:null,__:null,__b:0,__e:null,__c:null,constructor:void 0,__v:--Tp,__i:-1,__u:0,__source:r,__self:s};if(typeof n=="function"&&(a=n.defaultProps))for(o in a)l[o]===void 0&&(l[o]=a[o]);return Qe.vnode&&Qe.vnode(c),c}var ps,Yt,Ko,Wu,Zo=0,Xu=[],gt=Qe,$u=gt.__b,qu=gt.__r,Yu=gt.diffed,Ku=gt.__c,Zu=gt.unmount,Ju=gt.__;function Jo(n,e){gt.__h&&gt.__h(Yt,n,Zo||e),Zo=0;var t=Yt.__H||(Yt.__H={__:[],__h:[]});return n>=t.__.length&&t.__.push({}),t.__[n]}function Yi(n,e){var t=Jo(ps++,3);!gt.__s&&el(t.__H,e)&&(t.__=n,t.u=e,Yt.__H.__h.push(t))}function Ap(n,e){var t=Jo(ps++,4);!gt.__s&&el(t.__H,e)&&(t.__=n,t.u=e,Yt.__h.push(t))}function ti(n){return Zo=5,Qo(function(){return{current:n}},[])}function Qo(n,e){var t=Jo(ps++,7);return el(t.__H,e)&&(t.__=n(),t.__H=e,t.__h=n),t.__}function wp(){for(var n;n=Xu.shift();){var e=n.__H;if(n.__P&&e)try{e.__h.some(ra),e.__h.some(jo),e.__h=[]}catch(t){e.__h=[],gt.__e(t,n.__v)}}}gt.__b=function(n){Yt=null,$u&&$u(n)},gt.__=function(n,e){n&&e.__k&&e.__k.__m&&(n.__m=e.__k.__m),Ju&&Ju(n,e)},gt.__r=function(n){qu&&qu(n),ps=0;var e=(Yt=n.__c).__H;e&&(Ko===Yt?(e.__h=[],Yt.__h=[],e.__.some(function(t){t.__N&&(t.__=t.__N),t.u=t.__N=void 0})):(e.__h.some(ra),e.__h.some(jo),e.__h=[],ps=0)),Ko=Yt},gt.diffed=function(n){Yu&&Yu(n);var e=n.__c;e&&e.__H&&(e.__H.__h.length&&(Xu.push(e)!==1&&Wu===gt.requestAnimationFrame||((Wu=gt.requestAnimationFrame)||Rp)(wp)),e.__H.__.some(function(t){t.u&&(t.__H=t.u,t.u=void 0)})),Ko=Yt=null},gt.__c=function(n,e){e.some(function(t){try{t.__h.some(ra),t.__h=t.__h.filter(function(i){return!i.__||jo(i)})}catch(i){e.some(function(r){r.__h&&(r.__h=[])}),e=[],gt.__e(i,t.__v)}}),Ku&&Ku(n,e)},gt.unmount=function(n){Zu&&Zu(n);var e,t=n.__c;t&&t.__H&&(t.__H.__.some(function(i){try{ra(i)}catch(r){e=r}}),t.__H=void 0,e&&gt.__e(e,t.__v))};var Qu=typeof requestAnimationFrame=="function";function Rp(n){var e,t=function(){clearTimeout(i),Qu&&cancelAnimationFrame(e),setTimeout(n)},i=setTimeout(t,35);Qu&&(e=requestAnimationFrame(t))}function ra(n){var e=Yt,t=n.__c;typeof t=="function"&&(n.__c=void 0,t()),Yt=e}function jo(n){var e=Yt;n.__c=n.__(),Yt=e}function el(n,e){return!n||n.length!==e.length||e.some(function(t,i){return t!==n[i]})}var Cp=Symbol.for("preact-signals");function sa(){if(ni>1)ni--;else{var n,e=!1;for((function(){var r=oa;for(oa=void 0;r!==void 0;){var s=r.S;if(s.v===r.v)for(var a=s.t;a!==void 0;a=a.x)a.i===r.i&&(a.i=s.i);r=r.o}})();vs!==void 0;){var t=vs;for(vs=void 0,aa++;t!==void 0;){var i=t.u;if(t.u=void 0,t.f&=-3,!(8&t.f)&&ef(t))try{t.c()}catch(r){e||(n=r,e=!0)}t=i}}if(aa=0,ni--,e)throw n}}function ms(n){if(ni>0)return n();tl=++Pp,ni++;try{return n()}finally{sa()}}var gs,ct=void 0;function _s(n){var e=ct,t=gs;ct=void 0,gs=void 0;try{return n()}finally{ct=e,gs=t}}var vs=void 0,ni=0,aa=0,Pp=0,tl=0,oa=void 0,la=0;function ju(n){if(ct!==void 0){var e=n.n;if(e===void 0||e.t!==ct)return e={i:0,S:n,p:ct.s,n:void 0,t:ct,e:void 0,x:void 0,r:e},ct.s!==void 0&&(ct.s.n=e),ct.s=e,n.n=e,32&ct.f&&n.S(e),e;if(e.i===-1)return e.i=0,e.n!==void 0&&(e.n.p=e.p,e.p!==void 0&&(e.p.n=e.n),e.p=ct.s,e.n=void 0,ct.s.n=e,ct.s=e),e}}function Ft(n,e){this.v=n,this.i=0,this.n=void 0,this.t=void 0,this.l=0,this.W=e?.watched,this.Z=e?.unwatched,this.name=e?.name}Ft.prototype.brand=Cp,Ft.prototype.h=function(){return!0},Ft.prototype.S=function(n){var e=this,t=this.t;t!==n&&n.e===void 0&&(n.x=t,this.t=n,t!==void 0?t.e=n:_s(function(){var i;(i=e.W)==null||i.call(e)}))},Ft.prototype.U=function(n){var e=this;if(this.t!==void 0){var t=n.e,i=n.x;t!==void 0&&(t.x=i,n.e=void 0),i!==void 0&&(i.e=t,n.x=void 0),n===this.t&&(this.t=i,i===void 0&&_s(function(){var r;(r=e.Z)==null||r.call(e)}))}},Ft.prototype.subscribe=function(n){var e=this;return ii(function(){var t=e.value;_s(function(){return n(t)})},{name:"sub"})},Ft.prototype.valueOf=function(){return this.value},Ft.prototype.toString=function(){return this.value+""},Ft.prototype.toJSON=function(){return this.value},Ft.prototype.peek=function(){var n=this;return _s(function(){return n.value})},Object.defineProperty(Ft.prototype,"value",{get:function(){var n=ju(this);return n!==void 0&&(n.i=this.i),this.v},set:function(n){if(n!==this.v){if(aa>100)throw new Error("Cycle detected");(function(t){ni!==0&&aa===0&&t.l!==tl&&(t.l=tl,oa={S:t,v:t.v,i:t.i,o:oa})})(this),this.v=n,this.i++,la++,ni++;try{for(var e=this.t;e!==void 0;e=e.x)e.t.N()}finally{sa()}}}});function it(n,e){return new Ft(n,e)}function ef(n){for(var e=n.s;e!==void 0;e=e.n)if(e.S.i!==e.i||!e.S.h()||e.S.i!==e.i)return!0;return!1}function tf(n){for(var e=n.s;e!==void 0;e=e.n){var t=e.S.n;if(t!==void 0&&(e.r=t),e.S.n=e,e.i=-1,e.n===void 0){n.s=e;break}}}function nf(n){for(var e=n.s,t=void 0;e!==void 0;){var i=e.p;e.i===-1?(e.S.U(e),i!==void 0&&(i.n=e.n),e.n!==void 0&&(e.n.p=i)):t=e,e.S.n=e.r,e.r!==void 0&&(e.r=void 0),e=i}n.s=t}function Ki(n,e){Ft.call(this,void 0,e),this.x=n,this.s=void 0,this.g=la-1,this.f=4}Ki.prototype=new Ft,Ki.prototype.h=function(){if(this.f&=-3,1&this.f)return!1;if((36&this.f)==32||(this.f&=-5,this.g===la))return!0;if(this.g=la,this.f|=1,this.i>0&&!ef(this))return this.f&=-2,!0;var n=ct;try{tf(this),ct=this;var e=this.x();(16&this.f||this.v!==e||this.i===0)&&(this.v=e,this.f&=-17,this.i++)}catch(t){this.v=t,this.f|=16,this.i++}return ct=n,nf(this),this.f&=-2,!0},Ki.prototype.S=function(n){if(this.t===void 0){this.f|=36;for(var e=this.s;e!==void 0;e=e.n)e.S.S(e)}Ft.prototype.S.call(this,n)},Ki.prototype.U=function(n){if(this.t!==void 0&&(Ft.prototype.U.call(this,n),this.t===void 0)){this.f&=-33;for(var e=this.s;e!==void 0;e=e.n)e.S.U(e)}},Ki.prototype.N=function(){if(!(2&this.f)){this.f|=6;for(var n=this.t;n!==void 0;n=n.x)n.t.N()}},Object.defineProperty(Ki.prototype,"value",{get:function(){if(1&this.f)throw new Error("Cycle detected");var n=ju(this);if(this.h(),n!==void 0&&(n.i=this.i),16&this.f)throw this.v;return this.v}});function An(n,e){return new Ki(n,e)}function rf(n){var e=n.j;if(n.j=void 0,typeof e=="function"){ni++;var t=ct;ct=void 0;try{e()}catch(i){throw n.f&=-2,n.f|=8,nl(n),i}finally{ct=t,sa()}}}function nl(n){for(var e=n.s;e!==void 0;e=e.n)e.S.U(e);n.x=void 0,n.s=void 0,rf(n)}function Lp(n){if(ct!==this)throw new Error("Out-of-order effect");nf(this),ct=n,this.f&=-2;try{8&this.f&&nl(this)}finally{sa()}}function vr(n,e){this.x=n,this.j=void 0,this.s=void 0,this.u=void 0,this.f=32,this.name=e?.name,gs&&gs.push(this)}vr.prototype.c=function(){var n=this.S();try{if(8&this.f||this.x===void 0)return;var e=this.x();typeof e=="function"&&(this.j=e)}finally{n()}},vr.prototype.S=function(){if(1&this.f)throw new Error("Cycle detected");this.f|=1,this.f&=-9,rf(this),tf(this),ni++;var n=ct;return ct=this,Lp.bind(this,n)},vr.prototype.N=function(){2&this.f||(this.f|=2,this.u=vs,vs=this)},vr.prototype.d=function(){this.f|=8,1&this.f||nl(this)},vr.prototype.dispose=function(){this.d()};function ii(n,e){var t=new vr(n,e);try{t.c()}catch(r){throw t.d(),r}var i=t.d.bind(t);return i[Symbol.dispose]=i,i}var sf,ca,Dp=typeof window<"u"&&!!window.__PREACT_SIGNALS_DEVTOOLS__,af=[];ii(function(){sf=this.N})();function xr(n,e){Qe[n]=e.bind(null,Qe[n]||function(){})}function xs(n){if(ca){var e=ca;ca=void 0,e()}ca=n&&n.S()}function of(n){var e=this,t=n.data,i=Np(t);i.name="ReactiveDom",i.value=t;var r=Qo(function(){for(var o=e,l=e.__v;l=l.__;)if(l.__c){l.__c.__$f|=4;break}var c=An(function(){var h=i.value.value;return h===0?0:h===!0?"":h||""}),f=An(function(){return!Array.isArray(c.value)&&!Ru(c.value)}),d=ii(function(){if(this.N=lf,f.value){var h=c.value;o.__v&&o.__v.__e&&o.__v.__e.nodeType===3&&(o.__v.__e.data=h)}}),u=e.__$u.d;return e.__$u.d=function(){d(),u.call(this)},[f,c]},[]),s=r[0],a=r[1];return s.value?a.peek():a.value}of.displayName="ReactiveTextNode",Object.defineProperties(Ft.prototype,{constructor:{configurable:!0,value:Iu(bt,null).constructor},type:{configurable:!0,value:of},props:{configurable:!0,get:function(){var n=this;return{data:{get value(){return n.value}}}}},__b:{configurable:!0,value:1}}),xr("__b",function(n,e){if(xs(),typeof e.type=="string"){var t,i=e.props;for(var r in i)if(r!=="children"){var s=i[r];s instanceof Ft&&(t||(e.__np=t={}),t[r]=s,i[r]=s.peek())}}n(e)}),xr("__r",function(n,e){if(n(e),e.type!==bt){xs();var t,i=e.__c;i&&(i.__$f&=-2,(t=i.__$u)===void 0&&(i.__$u=t=(function(r,s){var a;return ii(function(){a=this},{name:s}),a.c=r,a})((function(r){return function(){var s;Dp&&((s=this.y)==null||s.call(this)),r.__$f|=1,r.setState({})}})(i),typeof e.type=="function"?e.type.displayName||e.type.name:""))),xs(t)}}),xr("__e",function(n,e,t,i){xs(),n(e,t,i)}),xr("diffed",function(n,e){xs();var t;if(typeof e.type=="string"&&(t=e.__e)){var i=e.__np,r=e.props,s=t.U;if(s)for(var a in s){var o=s[a];o===void 0||i&&a in i||(o.d(),s[a]=void 0)}if(i){s||(s={},t.U=s);for(var l in i){var c=s[l],f=i[l];c===void 0?(c=Ip(t,l,f,r),s[l]=c):c.o(f,r)}}}n(e)});function Ip(n,e,t,i){var r=e in n&&n.ownerSVGElement===void 0,s=it(t);return{o:function(a,o){s.value=a,i=o},d:ii(function(){this.N=lf;var a=s.value.value;i[e]!==a&&(i[e]=a,r?n[e]=a:a!=null&&(a!==!1||e[4]==="-")?n.setAttribute(e,a):n.removeAttribute(e))})}}xr("unmount",function(n,e){if(typeof e.type=="string"){var t=e.__e;if(t){var i=t.U;if(i){t.U=void 0;for(var r in i){var s=i[r];s&&s.d()}}}var a=e.__np;if(a){var o=e.props;for(var l in a)o[l]=a[l]}e.__np=void 0}else{var c=e.__c;if(c){c.__$f|=8;var f=c.__$u;f&&(c.__$u=void 0,f.d())}}n(e)}),xr("__h",function(n,e,t,i){i<3&&(e.__$f|=2),n(e,t,i)}),hs.prototype.shouldComponentUpdate=function(n,e){if(this.__R)return!0;var t=this.__$u,i=t&&t.s!==void 0;for(var r in e)return!0;if(this.__f||typeof this.u=="boolean"&&this.u===!0){var s=2&this.__$f;if(!(i||s||4&this.__$f)||1&this.__$f)return!0}else if(!(i||4&this.__$f)||3&this.__$f)return!0;for(var a in n)if(a!=="__source"&&n[a]!==this.props[a])return!0;for(var o in this.props)if(!(o in n))return!0;return!1};function Np(n,e){return Qo(function(){return it(n,e)},[])}var Up=function(n){queueMicrotask(function(){queueMicrotask(n)})};function Fp(){ms(function(){for(var n;n=af.shift();)sf.call(n)})}function lf(){af.push(this)===1&&(Qe.requestAnimationFrame||Up)(Fp)}const Op=["not damage","wrong place","duplicate","other"];function Ss(n,e){let t={state:"open",reason:null,label:null,notes:[]};for(const i of cf(n))i.target.id===e&&(i.action==="accept"&&(t={...t,state:"accepted",reason:null}),i.action==="reject"&&(t={...t,state:"rejected",reason:i.reason}),i.action==="relabel"&&(t={...t,label:String(i.value??"")}),i.action==="note"&&(t={...t,notes:[...t.notes,String(i.value??"")]}));return t}function Bp(n){return cf(n).pop()??null}function cf(n){const e=new Set(n.filter(t=>t.action==="undo").map(t=>t.value));return n.filter(t=>t.action!=="undo"&&!e.has(t.revision))}function kp(n){if(!n)return null;try{const e=JSON.parse(n);return Array.isArray(e)&&e.every(t=>typeof t=="object"&&t!==null&&"revision"in t&&"action"in t&&"target"in t)?e:null}catch{return null}}const il=1;function zp(n){const e=atob(n),t=new Uint8Array(e.length);for(let i=0;i<e.length;i++)t[i]=e.charCodeAt(i);return t}const Hp={SCALAR:1,VEC2:2,VEC3:3,VEC4:4},Gp={5120:127,5121:255,5122:32767,5123:65535,5125:4294967295,5126:1},Vp={5120:1,5121:1,5122:2,5123:2,5125:4,5126:4},Wp=1313821514;function Xp(n){const e=new DataView(n.buffer,n.byteOffset,n.byteLength);if(e.getUint32(0,!0)!==1179937895||e.getUint32(4,!0)!==2||e.getUint32(16,!0)!==Wp)throw new Error("surface.glb is no binary glTF 2.0");const t=e.getUint32(12,!0),i=JSON.parse(new TextDecoder().decode(n.subarray(20,20+t))),r=20+t+8,s=i.nodes.flatMap(d=>(d.mesh===void 0?[]:i.meshes[d.mesh]?.primitives??[]).map(h=>({node:d,primitive:h}))),a=d=>s.reduce((u,{primitive:h})=>u+(i.accessors[(d?h.attributes[d]:h.indices)??-1]?.count??0),0),o=a("POSITION"),l={position:new Float32Array(3*o),normal:new Float32Array(3*o),color:new Uint8Array(4*o).fill(160),support:new Uint8Array(o).fill(255),blade:new Uint8Array(o),finding:new Int32Array(o).fill(-1),index:new Uint32Array(a(null))};let[c,f]=[0,0];for(const{node:d,primitive:u}of s){const h=w=>{const _=u.attributes[w];return _===void 0?null:uf(i,e,r,_)},g=h("POSITION")??new Float32Array(0),x=Yp(d),m=g.length/3;for(let w=0;w<m;w++)for(let _=0;_<3;_++){let y=x[12+_];for(let I=0;I<3;I++)y+=x[4*I+_]*g[3*w+I];l.position[3*(c+w)+_]=y}const p=h("NORMAL");p&&l.normal.set(p,3*c);const v=h("COLOR_0");v&&$p(v,v.length/m,l.color,4*c);const M=h("_SUPPORT");M&&l.support.set(M.map(w=>Math.round(255*w)),c);const S=h("_BLADE");S&&l.blade.set(S,c);const b=/^defect_(\d+)$/.exec(d.name??"");if(b&&l.finding.fill(Number(b[1]),c,c+m),u.indices!==void 0){const w=uf(i,e,r,u.indices,!0);for(let _=0;_<w.length;_++)l.index[f+_]=w[_]+c;f+=w.length}c+=m}return l}function $p(n,e,t,i){for(let r=0;r<n.length/e;r++){for(let s=0;s<3;s++)t[i+4*r+s]=Math.round(255*n[e*r+s]);t[i+4*r+3]=255}}function uf(n,e,t,i,r=!1){const s=n.accessors[i],a=Hp[s.type]??1,o=r?new Float64Array(a*s.count):new Float32Array(a*s.count),l=s.bufferView===void 0?void 0:n.bufferViews[s.bufferView];if(!l)return o;const c=Vp[s.componentType],f=l.byteStride??a*c,d=t+(l.byteOffset??0)+(s.byteOffset??0),u=s.normalized?1/Gp[s.componentType]:1,h=qp(e,s.componentType);for(let g=0;g<s.count;g++)for(let x=0;x<a;x++)o[a*g+x]=h(d+g*f+x*c)*u;return o}function qp(n,e){switch(e){case 5120:return t=>n.getInt8(t);case 5121:return t=>n.getUint8(t);case 5122:return t=>n.getInt16(t,!0);case 5123:return t=>n.getUint16(t,!0);case 5125:return t=>n.getUint32(t,!0);case 5126:return t=>n.getFloat32(t,!0);default:throw new Error(`surface.glb has components of the unknown kind ${e}`)}}function Yp(n){if(n.matrix)return n.matrix;const[e=0,t=0,i=0]=n.translation??[],[r=0,s=0,a=0,o=1]=n.rotation??[],[l=1,c=1,f=1]=n.scale??[];return[(1-2*(s*s+a*a))*l,2*(r*s+a*o)*l,2*(r*a-s*o)*l,0,2*(r*s-a*o)*c,(1-2*(r*r+a*a))*c,2*(s*a+r*o)*c,0,2*(r*a+s*o)*f,2*(s*a-r*o)*f,(1-2*(r*r+s*s))*f,0,e,t,i,1]}const Kp={SIMPLE_PINHOLE:["f","cx","cy"],PINHOLE:["fx","fy","cx","cy"],SIMPLE_RADIAL:["f","cx","cy","k1"],RADIAL:["f","cx","cy","k1","k2"],OPENCV:["fx","fy","cx","cy","k1","k2","p1","p2"],SIMPLE_FISHEYE:["f","cx","cy"],SIMPLE_RADIAL_FISHEYE:["f","cx","cy","k1"],RADIAL_FISHEYE:["f","cx","cy","k1","k2"],OPENCV_FISHEYE:["fx","fy","cx","cy","k1","k2","k3","k4"]};function Zp(n,e){const t=Kp[n];if(!t||t.length!==e.length)return null;const i=s=>e[t.indexOf(s)]??0,r=i("f");return{fx:i("fx")||r,fy:i("fy")||r,cx:i("cx"),cy:i("cy"),radial:[i("k1"),i("k2"),i("k3"),i("k4")],tangential:[i("p1"),i("p2")],fisheye:n.endsWith("FISHEYE")}}function ff(n){const[e,t,i,r]=n.radial,s=n.fisheye?Math.PI:20;for(let a=0;a<=s;a+=s/4e3){const o=a*a;if(1+o*(3*e+o*(5*t+o*(7*i+o*9*r)))<=0)return a}return 1/0}function Jp(n,e,t,i,r=ff(n)){const[s,a,o,l]=n.radial,c=Math.hypot(e,t);if(i<=0)return null;if(n.fisheye){const m=Math.atan2(c,i);if(m>=r)return null;const p=m*m,v=m*(1+p*(s+p*(a+p*(o+p*l)))),M=c>1e-12?v/c:1/i;return[n.fx*e*M+n.cx,n.fy*t*M+n.cy]}const[f,d]=[e/i,t/i],u=f*f+d*d;if(Math.sqrt(u)>=r)return null;const[h,g]=n.tangential,x=1+u*(s+u*a);return[n.fx*(f*x+2*h*f*d+g*(u+2*f*f))+n.cx,n.fy*(d*x+2*g*f*d+h*(u+2*d*d))+n.cy]}function rl(n,e,t){const i=(e-n.cx)/n.fx,r=(t-n.cy)/n.fy;if(n.fisheye){const s=Math.hypot(i,r),a=Qp(n,s);if(a===null)return null;if(s<1e-12)return[0,0,1];const o=Math.sin(a)/s;return[i*o,r*o,Math.cos(a)]}return jp(n,i,r)}function Qp(n,e){const[t,i,r,s]=n.radial;let a=Math.min(e,1.5);for(let o=0;o<50;o++){const l=a*a,c=a*(1+l*(t+l*(i+l*(r+l*s))))-e,f=1+l*(3*t+l*(5*i+l*(7*r+l*9*s)));if(f<=0)return null;if(a-=c/f,Math.abs(c)<1e-12)break}return a>=0&&a<Math.PI/2?a:null}function jp(n,e,t){const[i,r]=n.radial,[s,a]=n.tangential;let[o,l]=[e,t];for(let f=0;f<100;f++){const d=o*o+l*l,u=1+d*(i+d*r),[h,g]=[o,l];if(o=(e-2*s*o*l-a*(d+2*o*o))/u,l=(t-2*a*h*l-s*(d+2*l*l))/u,Math.abs(o-h)+Math.abs(l-g)<1e-13)break}const c=Math.hypot(o,l,1);return[o/c,l/c,1/c]}const ua=[[255,176,0],[86,180,233],[240,90,160],[0,200,150],[190,130,255],[240,228,66],[255,110,60],[160,220,90]],df=["M1 0A1 1 0 1 1-1 0A1 1 0 1 1 1 0Z","M-.85-.85H.85V.85H-.85Z","M0-1L1 .85H-1Z","M0-1.1L1.1 0L0 1.1L-1.1 0Z","M-.35-1H.35V-.35H1V.35H.35V1H-.35V.35H-1V-.35H-.35Z","M0 1L-1-.85H1Z","M-.5-.9H.5L1 0L.5 .9H-.5L-1 0Z","M0-1.1L.3-.35L1.1-.3L.5 .2L.7 1L0 .55L-.7 1L-.5 .2L-1.1-.3L-.3-.35Z"];function em(n){const e=[...new Set(n)].sort();return new Map(e.map((t,i)=>[t,tm(i)]))}function tm(n){const e=n%ua.length;return{index:e,css:`rgb(${(ua[e]??[128,128,128]).join(" ")})`,shape:df[(n+Math.floor(n/ua.length))%df.length]}}function hf(n){const e=n.cam_from_world;if(!e||e.length!==12)return null;const t=r=>e[r],i=r=>-(t(r)*t(3)+t(4+r)*t(7)+t(8+r)*t(11));return{frame:n.index,m:e,center:[i(0),i(1),i(2)]}}function nm(n,e){const t=i=>n.m[i]*e[0]+n.m[i+1]*e[1]+n.m[i+2]*e[2]+n.m[i+3];return[t(0),t(4),t(8)]}function Sr(n,e){const t=i=>n.m[i]*e[0]+n.m[4+i]*e[1]+n.m[8+i]*e[2];return[t(0),t(1),t(2)]}const Si=(n,e)=>[n[0]-e[0],n[1]-e[1],n[2]-e[2]],sl=(n,e)=>n[0]*e[0]+n[1]*e[1]+n[2]*e[2],Mi=n=>Math.hypot(n[0],n[1],n[2]),fa=4,im=75,rm=5;class sm{constructor(e,t,i,r,s){this.lens=e,this.crop=t,this.surface=r,this.spacing=s,this.poses=new Map(i.flatMap(a=>hf(a)?[[a.index,hf(a)]]:[])),this.fold=e?ff(e):0}lens;crop;surface;spacing;poses;fold;pointAt(e,t,i){const r=this.poses.get(e);if(!r||!this.lens)return{reason:"frame_not_registered"};const[s,a,o,l]=this.crop;if(!(t>=s&&t<=o&&i>=a&&i<=l))return{reason:"outside_roi"};if(!this.surface)return{reason:"no_surface"};const c=rl(this.lens,t,i),f=c&&this.surface.cast(r.center,Sr(r,c));if(!f)return{reason:"off_surface"};if(f.cosine<=0)return{reason:"occluded"};const d=Math.acos(Math.min(1,f.cosine))*180/Math.PI,{point:u,normal:h,distance:g,finding:x,support:m}=f;return{reason:null,point:u,normal:h,distance:g,incidence_deg:d,finding:x,support:m}}framesSeeing(e,t){const i=Math.cos(im*Math.PI/180),r=[];for(const a of this.poses.values()){const o=this.pixelOf(a.frame,e),[l,c,f,d]=this.crop;if(!o||!(o[0]>l+fa&&o[0]<f-fa&&o[1]>c+fa&&o[1]<d-fa))continue;const u=Si(a.center,e),h=Mi(u),g=sl(u,t)/h;g<=i||!this.surface?.clear(a.center,e,rm*this.spacing)||r.push({frame:a.frame,quality:g/h**2,x:o[0],y:o[1]})}const s=Math.max(...r.map(a=>a.quality),1e-300);return r.map(a=>({...a,quality:a.quality/s})).sort((a,o)=>o.quality-a.quality||a.frame-o.frame)}pixelOf(e,t){const i=this.poses.get(e);return i&&this.lens?Jp(this.lens,...nm(i,t),this.fold):null}get limit(){return this.fold}}const Ms="187",am=0,pf=1,om=2,da=1,lm=2,ys=3,ri=0,Kt=1,an=2,Mr=0,bs=1,mf=2,gf=3,_f=4,cm=5,yr=100,um=101,fm=102,dm=103,hm=104,pm=200,mm=201,gm=202,_m=203,vf=204,xf=205,vm=206,xm=207,Sm=208,Mm=209,ym=210,bm=211,Em=212,Tm=213,Am=214,al=0,ol=1,ll=2,Es=3,cl=4,ul=5,fl=6,dl=7,Sf=0,wm=1,Rm=2,si=0,Mf=1,yf=2,bf=3,Ef=4,Tf=5,Af=6,wf=7,Rf=300,br=301,Ts=302,hl=303,pl=304,ml=1e3,ai=1001,gl=1002,Ot=1003,Cm=1004,ha=1005,tn=1006,_l=1007,yi=1008,hn=1009,Cf=1010,Pf=1011,As=1012,vl=1013,On=1014,Bn=1015,kn=1016,xl=1017,Sl=1018,Er=1020,Lf=35902,Df=35899,If=1021,Nf=1022,zn=1023,bi=1026,Ei=1027,Uf=1028,Ml=1029,Zi=1030,yl=1031,bl=1033,pa=33776,ma=33777,ga=33778,_a=33779,El=35840,Tl=35841,Al=35842,wl=35843,Rl=36196,Cl=37492,Pl=37496,Ll=37488,Dl=37489,va=37490,Il=37491,Nl=37808,Ul=37809,Fl=37810,Ol=37811,Bl=37812,kl=37813,zl=37814,Hl=37815,Gl=37816,Vl=37817,Wl=37818,Xl=37819,$l=37820,ql=37821,Yl=36492,Kl=36494,Zl=36495,Jl=36283,Ql=36284,xa=36285,jl=36286,Pm=3200,Ff=0,Lm=1,Ti="",pn="srgb",Sa="srgb-linear",Ma="linear",et="srgb",ec=7680,Dm=519,Im=512,Nm=513,Um=514,Of=515,Fm=516,Om=517,Bf=518,kf=519,Bm=35044,tc="300 es",wn=2e3,ya=2001;function km(n){for(let e=n.length-1;e>=0;--e)if(n[e]>=65535)return!0;return!1}function ba(n){return document.createElementNS("http://www.w3.org/1999/xhtml",n)}function zm(){const n=ba("canvas");return n.style.display="block",n}const zf={};function Hf(...n){const e="THREE."+n.shift();console.log(e,...n)}function Gf(n){const e=n[0];if(typeof e=="string"&&e.startsWith("TSL:")){const t=n[1];t&&t.isStackTrace?n[0]+=" "+t.getLocation():n[1]='Stack trace not available. Enable "THREE.Node.captureStackTrace" to capture stack traces.'}return n}function Pe(...n){n=Gf(n);const e="THREE."+n.shift();{const t=n[0];t&&t.isStackTrace?console.warn(t.getError(e)):console.warn(e,...n)}}function Ke(...n){n=Gf(n);const e="THREE."+n.shift();{const t=n[0];t&&t.isStackTrace?console.error(t.getError(e)):console.error(e,...n)}}function Ea(...n){const e=n.join(" ");e in zf||(zf[e]=!0,Pe(...n))}function Hm(n,e,t){return new Promise(function(i,r){function s(){switch(n.clientWaitSync(e,n.SYNC_FLUSH_COMMANDS_BIT,0)){case n.WAIT_FAILED:r();break;case n.TIMEOUT_EXPIRED:setTimeout(s,t);break;default:i()}}setTimeout(s,t)})}const Gm={[al]:al,[ll]:fl,[cl]:cl,[Es]:ul,[ol]:ol,[fl]:ll,[dl]:dl,[ul]:Es};class Ji{addEventListener(e,t){this._listeners===void 0&&(this._listeners={});const i=this._listeners;i[e]===void 0&&(i[e]=[]),i[e].indexOf(t)===-1&&i[e].push(t)}hasEventListener(e,t){const i=this._listeners;return i===void 0?!1:i[e]!==void 0&&i[e].indexOf(t)!==-1}removeEventListener(e,t){const i=this._listeners;if(i===void 0)return;const r=i[e];if(r!==void 0){const s=r.indexOf(t);s!==-1&&r.splice(s,1)}}dispatchEvent(e){const t=this._listeners;if(t===void 0)return;const i=t[e.type];if(i!==void 0){e.target=this;const r=i.slice(0);for(let s=0,a=r.length;s<a;s++)r[s].call(this,e);e.target=null}}}const Vt=["00","01","02","03","04","05","06","07","08","09","0a","0b","0c","0d","0e","0f","10","11","12","13","14","15","16","17","18","19","1a","1b","1c","1d","1e","1f","20","21","22","23","24","25","26","27","28","29","2a","2b","2c","2d","2e","2f","30","31","32","33","34","35","36","37","38","39","3a","3b","3c","3d","3e","3f","40","41","42","43","44","45","46","47","48","49","4a","4b","4c","4d","4e","4f","50","51","52","53","54","55","56","57","58","59","5a","5b","5c","5d","5e","5f","60","61","62","63","64","65","66","67","68","69","6a","6b","6c","6d","6e","6f","70","71","72","73","74","75","76","77","78","79","7a","7b","7c","7d","7e","7f","80","81","82","83","84","85","86","87","88","89","8a","8b","8c","8d","8e","8f","90","91","92","93","94","95","96","97","98","99","9a","9b","9c","9d","9e","9f","a0","a1","a2","a3","a4","a5","a6","a7","a8","a9","aa","ab","ac","ad","ae","af","b0","b1","b2","b3","b4","b5","b6","b7","b8","b9","ba","bb","bc","bd","be","bf","c0","c1","c2","c3","c4","c5","c6","c7","c8","c9","ca","cb","cc","cd","ce","cf","d0","d1","d2","d3","d4","d5","d6","d7","d8","d9","da","db","dc","dd","de","df","e0","e1","e2","e3","e4","e5","e6","e7","e8","e9","ea","eb","ec","ed","ee","ef","f0","f1","f2","f3","f4","f5","f6","f7","f8","f9","fa","fb","fc","fd","fe","ff"],nc=Math.PI/180,ic=180/Math.PI;function ws(){const n=Math.random()*4294967295|0,e=Math.random()*4294967295|0,t=Math.random()*4294967295|0,i=Math.random()*4294967295|0;return(Vt[n&255]+Vt[n>>8&255]+Vt[n>>16&255]+Vt[n>>24&255]+"-"+Vt[e&255]+Vt[e>>8&255]+"-"+Vt[e>>16&15|64]+Vt[e>>24&255]+"-"+Vt[t&63|128]+Vt[t>>8&255]+"-"+Vt[t>>16&255]+Vt[t>>24&255]+Vt[i&255]+Vt[i>>8&255]+Vt[i>>16&255]+Vt[i>>24&255]).toLowerCase()}function Oe(n,e,t){return Math.max(e,Math.min(t,n))}function Vm(n,e){return(n%e+e)%e}function rc(n,e,t){return(1-t)*n+t*e}function Wm(n){return Math.pow(2,Math.floor(Math.log(n)/Math.LN2))}function sc(n){switch(n.constructor){case Uint32Array:return 4294967295;case Uint16Array:return 65535;case Uint8Array:case Uint8ClampedArray:return 255;case Int32Array:return 2147483647;case Int16Array:return 32767;case Int8Array:return 127;default:return}}function Xm(n,e){if(e.constructor===Float32Array)return n;const t=sc(e);if(t===void 0)throw new Error("THREE.MathUtils: Invalid component type.");return Math.max(n/t,-1)}function $m(n,e){if(e.constructor===Float32Array)return n;const t=sc(e);if(t===void 0)throw new Error("THREE.MathUtils: Invalid component type.");return Math.round(n*t)}class He{static{this.prototype.isVector2=!0}constructor(e=0,t=0){this.x=e,this.y=t}get width(){return this.x}set width(e){this.x=e}get height(){return this.y}set height(e){this.y=e}set(e,t){return this.x=e,this.y=t,this}setScalar(e){return this.x=e,this.y=e,this}setX(e){return this.x=e,this}setY(e){return this.y=e,this}setComponent(e,t){switch(e){case 0:this.x=t;break;case 1:this.y=t;break;default:throw new Error("THREE.Vector2: index is out of range: "+e)}return this}getComponent(e){switch(e){case 0:return this.x;case 1:return this.y;default:throw new Error("THREE.Vector2: index is out of range: "+e)}}clone(){return new this.constructor(this.x,this.y)}copy(e){return this.x=e.x,this.y=e.y,this}add(e){return this.x+=e.x,this.y+=e.y,this}addScalar(e){return this.x+=e,this.y+=e,this}addVectors(e,t){return this.x=e.x+t.x,this.y=e.y+t.y,this}addScaledVector(e,t){return this.x+=e.x*t,this.y+=e.y*t,this}sub(e){return this.x-=e.x,this.y-=e.y,this}subScalar(e){return this.x-=e,this.y-=e,this}subVectors(e,t){return this.x=e.x-t.x,this.y=e.y-t.y,this}multiply(e){return this.x*=e.x,this.y*=e.y,this}multiplyScalar(e){return this.x*=e,this.y*=e,this}divide(e){return this.x/=e.x,this.y/=e.y,this}divideScalar(e){return this.multiplyScalar(1/e)}applyMatrix3(e){const t=this.x,i=this.y,r=e.elements;return this.x=r[0]*t+r[3]*i+r[6],this.y=r[1]*t+r[4]*i+r[7],this}min(e){return this.x=Math.min(this.x,e.x),this.y=Math.min(this.y,e.y),this}max(e){return this.x=Math.max(this.x,e.x),this.y=Math.max(this.y,e.y),this}clamp(e,t){return this.x=Oe(this.x,e.x,t.x),this.y=Oe(this.y,e.y,t.y),this}clampScalar(e,t){return this.x=Oe(this.x,e,t),this.y=Oe(this.y,e,t),this}clampLength(e,t){const i=this.length();return this.divideScalar(i||1).multiplyScalar(Oe(i,e,t))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this}negate(){return this.x=-this.x,this.y=-this.y,this}dot(e){return this.x*e.x+this.y*e.y}cross(e){return this.x*e.y-this.y*e.x}lengthSq(){return this.x*this.x+this.y*this.y}length(){return Math.sqrt(this.x*this.x+this.y*this.y)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)}normalize(){return this.divideScalar(this.length()||1)}angle(){return Math.atan2(-this.y,-this.x)+Math.PI}angleTo(e){const t=Math.sqrt(this.lengthSq()*e.lengthSq());if(t===0)return Math.PI/2;const i=this.dot(e)/t;return Math.acos(Oe(i,-1,1))}distanceTo(e){return Math.sqrt(this.distanceToSquared(e))}distanceToSquared(e){const t=this.x-e.x,i=this.y-e.y;return t*t+i*i}manhattanDistanceTo(e){return Math.abs(this.x-e.x)+Math.abs(this.y-e.y)}setLength(e){return this.normalize().multiplyScalar(e)}lerp(e,t){return this.x+=(e.x-this.x)*t,this.y+=(e.y-this.y)*t,this}lerpVectors(e,t,i){return this.x=e.x+(t.x-e.x)*i,this.y=e.y+(t.y-e.y)*i,this}equals(e){return e.x===this.x&&e.y===this.y}fromArray(e,t=0){return this.x=e[t],this.y=e[t+1],this}toArray(e=[],t=0){return e[t]=this.x,e[t+1]=this.y,e}fromBufferAttribute(e,t){return this.x=e.getX(t),this.y=e.getY(t),this}rotateAround(e,t){const i=Math.cos(t),r=Math.sin(t),s=this.x-e.x,a=this.y-e.y;return this.x=s*i-a*r+e.x,this.y=s*r+a*i+e.y,this}random(){return this.x=Math.random(),this.y=Math.random(),this}*[Symbol.iterator](){yield this.x,yield this.y}}class Ai{constructor(e=0,t=0,i=0,r=1){this.isQuaternion=!0,this._x=e,this._y=t,this._z=i,this._w=r}static slerpFlat(e,t,i,r,s,a,o){let l=i[r+0],c=i[r+1],f=i[r+2],d=i[r+3],u=s[a+0],h=s[a+1],g=s[a+2],x=s[a+3];if(d!==x||l!==u||c!==h||f!==g){let m=l*u+c*h+f*g+d*x;m<0&&(u=-u,h=-h,g=-g,x=-x,m=-m);let p=1-o;if(m<.9995){const v=Math.acos(m),M=Math.sin(v);p=Math.sin(p*v)/M,o=Math.sin(o*v)/M,l=l*p+u*o,c=c*p+h*o,f=f*p+g*o,d=d*p+x*o}else{l=l*p+u*o,c=c*p+h*o,f=f*p+g*o,d=d*p+x*o;const v=1/Math.sqrt(l*l+c*c+f*f+d*d);l*=v,c*=v,f*=v,d*=v}}e[t]=l,e[t+1]=c,e[t+2]=f,e[t+3]=d}static multiplyQuaternionsFlat(e,t,i,r,s,a){const o=i[r],l=i[r+1],c=i[r+2],f=i[r+3],d=s[a],u=s[a+1],h=s[a+2],g=s[a+3];return e[t]=o*g+f*d+l*h-c*u,e[t+1]=l*g+f*u+c*d-o*h,e[t+2]=c*g+f*h+o*u-l*d,e[t+3]=f*g-o*d-l*u-c*h,e}get x(){return this._x}set x(e){this._x=e,this._onChangeCallback()}get y(){return this._y}set y(e){this._y=e,this._onChangeCallback()}get z(){return this._z}set z(e){this._z=e,this._onChangeCallback()}get w(){return this._w}set w(e){this._w=e,this._onChangeCallback()}set(e,t,i,r){return this._x=e,this._y=t,this._z=i,this._w=r,this._onChangeCallback(),this}clone(){return new this.constructor(this._x,this._y,this._z,this._w)}copy(e){return this._x=e.x,this._y=e.y,this._z=e.z,this._w=e.w,this._onChangeCallback(),this}setFromEuler(e,t=!0){const i=e._x,r=e._y,s=e._z,a=e._order,o=Math.cos,l=Math.sin,c=o(i/2),f=o(r/2),d=o(s/2),u=l(i/2),h=l(r/2),g=l(s/2);switch(a){case"XYZ":this._x=u*f*d+c*h*g,this._y=c*h*d-u*f*g,this._z=c*f*g+u*h*d,this._w=c*f*d-u*h*g;break;case"YXZ":this._x=u*f*d+c*h*g,this._y=c*h*d-u*f*g,this._z=c*f*g-u*h*d,this._w=c*f*d+u*h*g;break;case"ZXY":this._x=u*f*d-c*h*g,this._y=c*h*d+u*f*g,this._z=c*f*g+u*h*d,this._w=c*f*d-u*h*g;break;case"ZYX":this._x=u*f*d-c*h*g,this._y=c*h*d+u*f*g,this._z=c*f*g-u*h*d,this._w=c*f*d+u*h*g;break;case"YZX":this._x=u*f*d+c*h*g,this._y=c*h*d+u*f*g,this._z=c*f*g-u*h*d,this._w=c*f*d-u*h*g;break;case"XZY":this._x=u*f*d-c*h*g,this._y=c*h*d-u*f*g,this._z=c*f*g+u*h*d,this._w=c*f*d+u*h*g;break;default:Pe("Quaternion: .setFromEuler() encountered an unknown order: "+a)}return t===!0&&this._onChangeCallback(),this}setFromAxisAngle(e,t){const i=t/2,r=Math.sin(i);return this._x=e.x*r,this._y=e.y*r,this._z=e.z*r,this._w=Math.cos(i),this._onChangeCallback(),this}setFromRotationMatrix(e){const t=e.elements,i=t[0],r=t[4],s=t[8],a=t[1],o=t[5],l=t[9],c=t[2],f=t[6],d=t[10],u=i+o+d;if(u>0){const h=.5/Math.sqrt(u+1);this._w=.25/h,this._x=(f-l)*h,this._y=(s-c)*h,this._z=(a-r)*h}else if(i>o&&i>d){const h=2*Math.sqrt(1+i-o-d);this._w=(f-l)/h,this._x=.25*h,this._y=(r+a)/h,this._z=(s+c)/h}else if(o>d){const h=2*Math.sqrt(1+o-i-d);this._w=(s-c)/h,this._x=(r+a)/h,this._y=.25*h,this._z=(l+f)/h}else{const h=2*Math.sqrt(1+d-i-o);this._w=(a-r)/h,this._x=(s+c)/h,this._y=(l+f)/h,this._z=.25*h}return this._onChangeCallback(),this}setFromUnitVectors(e,t){let i=e.dot(t)+1;return i<1e-8?(i=0,Math.abs(e.x)>Math.abs(e.z)?(this._x=-e.y,this._y=e.x,this._z=0,this._w=i):(this._x=0,this._y=-e.z,this._z=e.y,this._w=i)):(this._x=e.y*t.z-e.z*t.y,this._y=e.z*t.x-e.x*t.z,this._z=e.x*t.y-e.y*t.x,this._w=i),this.normalize()}angleTo(e){return 2*Math.acos(Math.abs(Oe(this.dot(e),-1,1)))}rotateTowards(e,t){const i=this.angleTo(e);if(i===0)return this;const r=Math.min(1,t/i);return this.slerp(e,r),this}identity(){return this.set(0,0,0,1)}invert(){return this.conjugate()}conjugate(){return this._x*=-1,this._y*=-1,this._z*=-1,this._onChangeCallback(),this}dot(e){return this._x*e._x+this._y*e._y+this._z*e._z+this._w*e._w}lengthSq(){return this._x*this._x+this._y*this._y+this._z*this._z+this._w*this._w}length(){return Math.sqrt(this._x*this._x+this._y*this._y+this._z*this._z+this._w*this._w)}normalize(){let e=this.length();return e===0?(this._x=0,this._y=0,this._z=0,this._w=1):(e=1/e,this._x=this._x*e,this._y=this._y*e,this._z=this._z*e,this._w=this._w*e),this._onChangeCallback(),this}multiply(e){return this.multiplyQuaternions(this,e)}premultiply(e){return this.multiplyQuaternions(e,this)}multiplyQuaternions(e,t){const i=e._x,r=e._y,s=e._z,a=e._w,o=t._x,l=t._y,c=t._z,f=t._w;return this._x=i*f+a*o+r*c-s*l,this._y=r*f+a*l+s*o-i*c,this._z=s*f+a*c+i*l-r*o,this._w=a*f-i*o-r*l-s*c,this._onChangeCallback(),this}slerp(e,t){let i=e._x,r=e._y,s=e._z,a=e._w,o=this.dot(e);o<0&&(i=-i,r=-r,s=-s,a=-a,o=-o);let l=1-t;if(o<.9995){const c=Math.acos(o),f=Math.sin(c);l=Math.sin(l*c)/f,t=Math.sin(t*c)/f,this._x=this._x*l+i*t,this._y=this._y*l+r*t,this._z=this._z*l+s*t,this._w=this._w*l+a*t,this._onChangeCallback()}else this._x=this._x*l+i*t,this._y=this._y*l+r*t,this._z=this._z*l+s*t,this._w=this._w*l+a*t,this.normalize();return this}slerpQuaternions(e,t,i){return this.copy(e).slerp(t,i)}random(){const e=2*Math.PI*Math.random(),t=2*Math.PI*Math.random(),i=Math.random(),r=Math.sqrt(1-i),s=Math.sqrt(i);return this.set(r*Math.sin(e),r*Math.cos(e),s*Math.sin(t),s*Math.cos(t))}equals(e){return e._x===this._x&&e._y===this._y&&e._z===this._z&&e._w===this._w}fromArray(e,t=0){return this._x=e[t],this._y=e[t+1],this._z=e[t+2],this._w=e[t+3],this._onChangeCallback(),this}toArray(e=[],t=0){return e[t]=this._x,e[t+1]=this._y,e[t+2]=this._z,e[t+3]=this._w,e}fromBufferAttribute(e,t){return this._x=e.getX(t),this._y=e.getY(t),this._z=e.getZ(t),this._w=e.getW(t),this._onChangeCallback(),this}toJSON(){return this.toArray()}_onChange(e){return this._onChangeCallback=e,this}_onChangeCallback(){}*[Symbol.iterator](){yield this._x,yield this._y,yield this._z,yield this._w}}class N{static{this.prototype.isVector3=!0}constructor(e=0,t=0,i=0){this.x=e,this.y=t,this.z=i}set(e,t,i){return i===void 0&&(i=this.z),this.x=e,this.y=t,this.z=i,this}setScalar(e){return this.x=e,this.y=e,this.z=e,this}setX(e){return this.x=e,this}setY(e){return this.y=e,this}setZ(e){return this.z=e,this}setComponent(e,t){switch(e){case 0:this.x=t;break;case 1:this.y=t;break;case 2:this.z=t;break;default:throw new Error("THREE.Vector3: index is out of range: "+e)}return this}getComponent(e){switch(e){case 0:return this.x;case 1:return this.y;case 2:return this.z;default:throw new Error("THREE.Vector3: index is out of range: "+e)}}clone(){return new this.constructor(this.x,this.y,this.z)}copy(e){return this.x=e.x,this.y=e.y,this.z=e.z,this}add(e){return this.x+=e.x,this.y+=e.y,this.z+=e.z,this}addScalar(e){return this.x+=e,this.y+=e,this.z+=e,this}addVectors(e,t){return this.x=e.x+t.x,this.y=e.y+t.y,this.z=e.z+t.z,this}addScaledVector(e,t){return this.x+=e.x*t,this.y+=e.y*t,this.z+=e.z*t,this}sub(e){return this.x-=e.x,this.y-=e.y,this.z-=e.z,this}subScalar(e){return this.x-=e,this.y-=e,this.z-=e,this}subVectors(e,t){return this.x=e.x-t.x,this.y=e.y-t.y,this.z=e.z-t.z,this}multiply(e){return this.x*=e.x,this.y*=e.y,this.z*=e.z,this}multiplyScalar(e){return this.x*=e,this.y*=e,this.z*=e,this}multiplyVectors(e,t){return this.x=e.x*t.x,this.y=e.y*t.y,this.z=e.z*t.z,this}applyEuler(e){return this.applyQuaternion(Vf.setFromEuler(e))}applyAxisAngle(e,t){return this.applyQuaternion(Vf.setFromAxisAngle(e,t))}applyMatrix3(e){const t=this.x,i=this.y,r=this.z,s=e.elements;return this.x=s[0]*t+s[3]*i+s[6]*r,this.y=s[1]*t+s[4]*i+s[7]*r,this.z=s[2]*t+s[5]*i+s[8]*r,this}applyNormalMatrix(e){return this.applyMatrix3(e).normalize()}applyMatrix4(e){const t=this.x,i=this.y,r=this.z,s=e.elements,a=1/(s[3]*t+s[7]*i+s[11]*r+s[15]);return this.x=(s[0]*t+s[4]*i+s[8]*r+s[12])*a,this.y=(s[1]*t+s[5]*i+s[9]*r+s[13])*a,this.z=(s[2]*t+s[6]*i+s[10]*r+s[14])*a,this}applyQuaternion(e){const t=this.x,i=this.y,r=this.z,s=e.x,a=e.y,o=e.z,l=e.w,c=2*(a*r-o*i),f=2*(o*t-s*r),d=2*(s*i-a*t);return this.x=t+l*c+a*d-o*f,this.y=i+l*f+o*c-s*d,this.z=r+l*d+s*f-a*c,this}project(e){return this.applyMatrix4(e.matrixWorldInverse).applyMatrix4(e.projectionMatrix)}unproject(e){return this.applyMatrix4(e.projectionMatrixInverse).applyMatrix4(e.matrixWorld)}transformDirection(e){const t=this.x,i=this.y,r=this.z,s=e.elements;return this.x=s[0]*t+s[4]*i+s[8]*r,this.y=s[1]*t+s[5]*i+s[9]*r,this.z=s[2]*t+s[6]*i+s[10]*r,this.normalize()}divide(e){return this.x/=e.x,this.y/=e.y,this.z/=e.z,this}divideScalar(e){return this.multiplyScalar(1/e)}min(e){return this.x=Math.min(this.x,e.x),this.y=Math.min(this.y,e.y),this.z=Math.min(this.z,e.z),this}max(e){return this.x=Math.max(this.x,e.x),this.y=Math.max(this.y,e.y),this.z=Math.max(this.z,e.z),this}clamp(e,t){return this.x=Oe(this.x,e.x,t.x),this.y=Oe(this.y,e.y,t.y),this.z=Oe(this.z,e.z,t.z),this}clampScalar(e,t){return this.x=Oe(this.x,e,t),this.y=Oe(this.y,e,t),this.z=Oe(this.z,e,t),this}clampLength(e,t){const i=this.length();return this.divideScalar(i||1).multiplyScalar(Oe(i,e,t))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this.z=Math.floor(this.z),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this.z=Math.ceil(this.z),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this.z=Math.round(this.z),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this.z=Math.trunc(this.z),this}negate(){return this.x=-this.x,this.y=-this.y,this.z=-this.z,this}dot(e){return this.x*e.x+this.y*e.y+this.z*e.z}lengthSq(){return this.x*this.x+this.y*this.y+this.z*this.z}length(){return Math.sqrt(this.x*this.x+this.y*this.y+this.z*this.z)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)+Math.abs(this.z)}normalize(){return this.divideScalar(this.length()||1)}setLength(e){return this.normalize().multiplyScalar(e)}lerp(e,t){return this.x+=(e.x-this.x)*t,this.y+=(e.y-this.y)*t,this.z+=(e.z-this.z)*t,this}lerpVectors(e,t,i){return this.x=e.x+(t.x-e.x)*i,this.y=e.y+(t.y-e.y)*i,this.z=e.z+(t.z-e.z)*i,this}cross(e){return this.crossVectors(this,e)}crossVectors(e,t){const i=e.x,r=e.y,s=e.z,a=t.x,o=t.y,l=t.z;return this.x=r*l-s*o,this.y=s*a-i*l,this.z=i*o-r*a,this}projectOnVector(e){const t=e.lengthSq();if(t===0)return this.set(0,0,0);const i=e.dot(this)/t;return this.copy(e).multiplyScalar(i)}projectOnPlane(e){return ac.copy(this).projectOnVector(e),this.sub(ac)}reflect(e){return this.sub(ac.copy(e).multiplyScalar(2*this.dot(e)))}angleTo(e){const t=Math.sqrt(this.lengthSq()*e.lengthSq());if(t===0)return Math.PI/2;const i=this.dot(e)/t;return Math.acos(Oe(i,-1,1))}distanceTo(e){return Math.sqrt(this.distanceToSquared(e))}distanceToSquared(e){const t=this.x-e.x,i=this.y-e.y,r=this.z-e.z;return t*t+i*i+r*r}manhattanDistanceTo(e){return Math.abs(this.x-e.x)+Math.abs(this.y-e.y)+Math.abs(this.z-e.z)}setFromSpherical(e){return this.setFromSphericalCoords(e.radius,e.phi,e.theta)}setFromSphericalCoords(e,t,i){const r=Math.sin(t)*e;return this.x=r*Math.sin(i),this.y=Math.cos(t)*e,this.z=r*Math.cos(i),this}setFromCylindrical(e){return this.setFromCylindricalCoords(e.radius,e.theta,e.y)}setFromCylindricalCoords(e,t,i){return this.x=e*Math.sin(t),this.y=i,this.z=e*Math.cos(t),this}setFromMatrixPosition(e){const t=e.elements;return this.x=t[12],this.y=t[13],this.z=t[14],this}setFromMatrixScale(e){const t=this.setFromMatrixColumn(e,0).length(),i=this.setFromMatrixColumn(e,1).length(),r=this.setFromMatrixColumn(e,2).length();return this.x=t,this.y=i,this.z=r,this}setFromMatrixColumn(e,t){return this.fromArray(e.elements,t*4)}setFromMatrix3Column(e,t){return this.fromArray(e.elements,t*3)}setFromEuler(e){return this.x=e._x,this.y=e._y,this.z=e._z,this}setFromColor(e){return this.x=e.r,this.y=e.g,this.z=e.b,this}equals(e){return e.x===this.x&&e.y===this.y&&e.z===this.z}fromArray(e,t=0){return this.x=e[t],this.y=e[t+1],this.z=e[t+2],this}toArray(e=[],t=0){return e[t]=this.x,e[t+1]=this.y,e[t+2]=this.z,e}fromBufferAttribute(e,t){return this.x=e.getX(t),this.y=e.getY(t),this.z=e.getZ(t),this}random(){return this.x=Math.random(),this.y=Math.random(),this.z=Math.random(),this}randomDirection(){const e=Math.random()*Math.PI*2,t=Math.random()*2-1,i=Math.sqrt(1-t*t);return this.x=i*Math.cos(e),this.y=t,this.z=i*Math.sin(e),this}*[Symbol.iterator](){yield this.x,yield this.y,yield this.z}}const ac=new N,Vf=new Ai;class Fe{static{this.prototype.isMatrix3=!0}constructor(e,t,i,r,s,a,o,l,c){this.elements=[1,0,0,0,1,0,0,0,1],e!==void 0&&this.set(e,t,i,r,s,a,o,l,c)}set(e,t,i,r,s,a,o,l,c){const f=this.elements;return f[0]=e,f[1]=r,f[2]=o,f[3]=t,f[4]=s,f[5]=l,f[6]=i,f[7]=a,f[8]=c,this}identity(){return this.set(1,0,0,0,1,0,0,0,1),this}copy(e){const t=this.elements,i=e.elements;return t[0]=i[0],t[1]=i[1],t[2]=i[2],t[3]=i[3],t[4]=i[4],t[5]=i[5],t[6]=i[6],t[7]=i[7],t[8]=i[8],this}extractBasis(e,t,i){return e.setFromMatrix3Column(this,0),t.setFromMatrix3Column(this,1),i.setFromMatrix3Column(this,2),this}setFromMatrix4(e){const t=e.elements;return this.set(t[0],t[4],t[8],t[1],t[5],t[9],t[2],t[6],t[10]),this}multiply(e){return this.multiplyMatrices(this,e)}premultiply(e){return this.multiplyMatrices(e,this)}multiplyMatrices(e,t){const i=e.elements,r=t.elements,s=this.elements,a=i[0],o=i[3],l=i[6],c=i[1],f=i[4],d=i[7],u=i[2],h=i[5],g=i[8],x=r[0],m=r[3],p=r[6],v=r[1],M=r[4],S=r[7],b=r[2],w=r[5],_=r[8];return s[0]=a*x+o*v+l*b,s[3]=a*m+o*M+l*w,s[6]=a*p+o*S+l*_,s[1]=c*x+f*v+d*b,s[4]=c*m+f*M+d*w,s[7]=c*p+f*S+d*_,s[2]=u*x+h*v+g*b,s[5]=u*m+h*M+g*w,s[8]=u*p+h*S+g*_,this}multiplyScalar(e){const t=this.elements;return t[0]*=e,t[3]*=e,t[6]*=e,t[1]*=e,t[4]*=e,t[7]*=e,t[2]*=e,t[5]*=e,t[8]*=e,this}determinant(){const e=this.elements,t=e[0],i=e[1],r=e[2],s=e[3],a=e[4],o=e[5],l=e[6],c=e[7],f=e[8];return t*a*f-t*o*c-i*s*f+i*o*l+r*s*c-r*a*l}invert(){const e=this.elements,t=e[0],i=e[1],r=e[2],s=e[3],a=e[4],o=e[5],l=e[6],c=e[7],f=e[8],d=f*a-o*c,u=o*l-f*s,h=c*s-a*l,g=t*d+i*u+r*h;if(g===0)return this.set(0,0,0,0,0,0,0,0,0);const x=1/g;return e[0]=d*x,e[1]=(r*c-f*i)*x,e[2]=(o*i-r*a)*x,e[3]=u*x,e[4]=(f*t-r*l)*x,e[5]=(r*s-o*t)*x,e[6]=h*x,e[7]=(i*l-c*t)*x,e[8]=(a*t-i*s)*x,this}transpose(){let e;const t=this.elements;return e=t[1],t[1]=t[3],t[3]=e,e=t[2],t[2]=t[6],t[6]=e,e=t[5],t[5]=t[7],t[7]=e,this}getNormalMatrix(e){return this.setFromMatrix4(e).invert().transpose()}transposeIntoArray(e){const t=this.elements;return e[0]=t[0],e[1]=t[3],e[2]=t[6],e[3]=t[1],e[4]=t[4],e[5]=t[7],e[6]=t[2],e[7]=t[5],e[8]=t[8],this}setUvTransform(e,t,i,r,s,a,o){const l=Math.cos(s),c=Math.sin(s);return this.set(i*l,i*c,-i*(l*a+c*o)+a+e,-r*c,r*l,-r*(-c*a+l*o)+o+t,0,0,1),this}scale(e,t){return Ea("Matrix3: .scale() is deprecated. Use .makeScale() instead."),this.premultiply(oc.makeScale(e,t)),this}rotate(e){return Ea("Matrix3: .rotate() is deprecated. Use .makeRotation() instead."),this.premultiply(oc.makeRotation(-e)),this}translate(e,t){return Ea("Matrix3: .translate() is deprecated. Use .makeTranslation() instead."),this.premultiply(oc.makeTranslation(e,t)),this}makeTranslation(e,t){return e.isVector2?this.set(1,0,e.x,0,1,e.y,0,0,1):this.set(1,0,e,0,1,t,0,0,1),this}makeRotation(e){const t=Math.cos(e),i=Math.sin(e);return this.set(t,-i,0,i,t,0,0,0,1),this}makeScale(e,t){return this.set(e,0,0,0,t,0,0,0,1),this}equals(e){const t=this.elements,i=e.elements;for(let r=0;r<9;r++)if(t[r]!==i[r])return!1;return!0}fromArray(e,t=0){for(let i=0;i<9;i++)this.elements[i]=e[i+t];return this}toArray(e=[],t=0){const i=this.elements;return e[t]=i[0],e[t+1]=i[1],e[t+2]=i[2],e[t+3]=i[3],e[t+4]=i[4],e[t+5]=i[5],e[t+6]=i[6],e[t+7]=i[7],e[t+8]=i[8],e}clone(){return new this.constructor().fromArray(this.elements)}}const oc=new Fe,Wf=new Fe().set(.4123908,.3575843,.1804808,.212639,.7151687,.0721923,.0193308,.1191948,.9505322),Xf=new Fe().set(3.2409699,-1.5373832,-.4986108,-.9692436,1.8759675,.0415551,.0556301,-.203977,1.0569715);function qm(){const n={enabled:!0,workingColorSpace:Sa,spaces:{},convert:function(r,s,a){return this.enabled===!1||s===a||!s||!a||(this.spaces[s].transfer===et&&(r.r=oi(r.r),r.g=oi(r.g),r.b=oi(r.b)),this.spaces[s].primaries!==this.spaces[a].primaries&&(r.applyMatrix3(this.spaces[s].toXYZ),r.applyMatrix3(this.spaces[a].fromXYZ)),this.spaces[a].transfer===et&&(r.r=Tr(r.r),r.g=Tr(r.g),r.b=Tr(r.b))),r},workingToColorSpace:function(r,s){return this.convert(r,this.workingColorSpace,s)},colorSpaceToWorking:function(r,s){return this.convert(r,s,this.workingColorSpace)},getPrimaries:function(r){return this.spaces[r].primaries},getTransfer:function(r){return r===Ti?Ma:this.spaces[r].transfer},getToneMappingMode:function(r){return this.spaces[r].outputColorSpaceConfig.toneMappingMode||"standard"},getLuminanceCoefficients:function(r,s=this.workingColorSpace){return r.fromArray(this.spaces[s].luminanceCoefficients)},define:function(r){Object.assign(this.spaces,r)},_getMatrix:function(r,s,a){return r.copy(this.spaces[a].fromXYZ).multiply(this.spaces[s].toXYZ)},_getDrawingBufferColorSpace:function(r){return this.spaces[r].outputColorSpaceConfig.drawingBufferColorSpace},_getUnpackColorSpace:function(r=this.workingColorSpace){return this.spaces[r].workingColorSpaceConfig.unpackColorSpace}},e=[.64,.33,.3,.6,.15,.06],t=[.2126,.7152,.0722],i=[.3127,.329];return n.define({[Sa]:{primaries:e,whitePoint:i,transfer:Ma,toXYZ:Wf,fromXYZ:Xf,luminanceCoefficients:t,workingColorSpaceConfig:{unpackColorSpace:pn},outputColorSpaceConfig:{drawingBufferColorSpace:pn}},[pn]:{primaries:e,whitePoint:i,transfer:et,toXYZ:Wf,fromXYZ:Xf,luminanceCoefficients:t,outputColorSpaceConfig:{drawingBufferColorSpace:pn}}}),n}const Xe=qm();function oi(n){return n<.04045?n*.0773993808:Math.pow(n*.9478672986+.0521327014,2.4)}function Tr(n){return n<.0031308?n*12.92:1.055*Math.pow(n,.41666)-.055}let Ar;class Ym{static getDataURL(e,t="image/png"){if(/^data:/i.test(e.src)||typeof HTMLCanvasElement>"u")return e.src;let i;if(e instanceof HTMLCanvasElement)i=e;else{Ar===void 0&&(Ar=ba("canvas")),Ar.width=e.width,Ar.height=e.height;const r=Ar.getContext("2d");e instanceof ImageData?r.putImageData(e,0,0):r.drawImage(e,0,0,e.width,e.height),i=Ar}return i.toDataURL(t)}static sRGBToLinear(e){if(typeof HTMLImageElement<"u"&&e instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&e instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&e instanceof ImageBitmap){const t=ba("canvas");t.width=e.width,t.height=e.height;const i=t.getContext("2d");i.drawImage(e,0,0,e.width,e.height);const r=i.getImageData(0,0,e.width,e.height),s=r.data;for(let a=0;a<s.length;a++)s[a]=oi(s[a]/255)*255;return i.putImageData(r,0,0),t}else if(e.data){const t=e.data.slice(0);for(let i=0;i<t.length;i++)t instanceof Uint8Array||t instanceof Uint8ClampedArray?t[i]=Math.floor(oi(t[i]/255)*255):t[i]=oi(t[i]);return{data:t,width:e.width,height:e.height}}else return Pe("ImageUtils.sRGBToLinear(): Unsupported image type. No color space conversion applied."),e}}let Km=0;class lc{constructor(e=null){this.isTextureSource=!0,Object.defineProperty(this,"id",{value:Km++}),this.uuid=ws(),this.data=e,this.dataReady=!0,this.version=0}getSize(e){const t=this.data;return typeof HTMLVideoElement<"u"&&t instanceof HTMLVideoElement?e.set(t.videoWidth,t.videoHeight,0):typeof VideoFrame<"u"&&t instanceof VideoFrame?e.set(t.displayWidth,t.displayHeight,0):t!==null?e.set(t.width||0,t.height||0,t.depth||0):e.set(0,0,0),e}set needsUpdate(e){e===!0&&this.version++}toJSON(e){const t=e===void 0||typeof e=="string";if(!t&&e.images[this.uuid]!==void 0)return e.images[this.uuid];const i={uuid:this.uuid,url:""},r=this.data;if(r!==null){let s;if(Array.isArray(r)){s=[];for(let a=0,o=r.length;a<o;a++)r[a].isDataTexture?s.push(cc(r[a].image)):s.push(cc(r[a]))}else s=cc(r);i.url=s}return t||(e.images[this.uuid]=i),i}}function cc(n){return typeof HTMLImageElement<"u"&&n instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&n instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&n instanceof ImageBitmap?Ym.getDataURL(n):n.data?{data:Array.from(n.data),width:n.width,height:n.height,type:n.data.constructor.name}:(Pe("Texture: Unable to serialize Texture."),{})}let Zm=0;const uc=new N;class Zt extends Ji{constructor(e=Zt.DEFAULT_IMAGE,t=Zt.DEFAULT_MAPPING,i=ai,r=ai,s=tn,a=yi,o=zn,l=hn,c=Zt.DEFAULT_ANISOTROPY,f=Ti){super(),this.isTexture=!0,Object.defineProperty(this,"id",{value:Zm++}),this.uuid=ws(),this.name="",this.source=new lc(e),this.mipmaps=[],this.mapping=t,this.channel=0,this.wrapS=i,this.wrapT=r,this.magFilter=s,this.minFilter=a,this.anisotropy=c,this.format=o,this.internalFormat=null,this.type=l,this.offset=new He(0,0),this.repeat=new He(1,1),this.center=new He(0,0),this.rotation=0,this.matrixAutoUpdate=!0,this.matrix=new Fe,this.generateMipmaps=!0,this.mipmapsAutoUpdate=!0,this.premultiplyAlpha=!1,this.flipY=!0,this.unpackAlignment=4,this.colorSpace=f,this.userData={},this.updateRanges=[],this.version=0,this.onUpdate=null,this.renderTarget=null,this.isRenderTargetTexture=!1,this.isArrayTexture=!!(e&&e.depth&&e.depth>1),this.pmremVersion=0,this.isPMREMTexture=!1,this.normalized=!1}get width(){return this.source.getSize(uc).x}get height(){return this.source.getSize(uc).y}get depth(){return this.source.getSize(uc).z}get image(){return this.source.data}set image(e){this.source.data=e}updateMatrix(){this.matrix.setUvTransform(this.offset.x,this.offset.y,this.repeat.x,this.repeat.y,this.rotation,this.center.x,this.center.y)}addUpdateRange(e,t){this.updateRanges.push({start:e,count:t})}clearUpdateRanges(){this.updateRanges.length=0}clone(){return new this.constructor().copy(this)}copy(e){return this.name=e.name,this.source=e.source,this.mipmaps=e.mipmaps.slice(0),this.mapping=e.mapping,this.channel=e.channel,this.wrapS=e.wrapS,this.wrapT=e.wrapT,this.magFilter=e.magFilter,this.minFilter=e.minFilter,this.anisotropy=e.anisotropy,this.format=e.format,this.internalFormat=e.internalFormat,this.type=e.type,this.normalized=e.normalized,this.offset.copy(e.offset),this.repeat.copy(e.repeat),this.center.copy(e.center),this.rotation=e.rotation,this.matrixAutoUpdate=e.matrixAutoUpdate,this.matrix.copy(e.matrix),this.generateMipmaps=e.generateMipmaps,this.mipmapsAutoUpdate=e.mipmapsAutoUpdate,this.premultiplyAlpha=e.premultiplyAlpha,this.flipY=e.flipY,this.unpackAlignment=e.unpackAlignment,this.colorSpace=e.colorSpace,this.renderTarget=e.renderTarget,this.isRenderTargetTexture=e.isRenderTargetTexture,this.isPMREMTexture=e.isPMREMTexture,this.isArrayTexture=e.isArrayTexture,this.userData=JSON.parse(JSON.stringify(e.userData)),this.needsUpdate=!0,this}setValues(e){for(const t in e){const i=e[t];if(i===void 0){Pe(`Texture.setValues(): parameter '${t}' has value of undefined.`);continue}const r=this[t];if(r===void 0){Pe(`Texture.setValues(): property '${t}' does not exist.`);continue}r&&i&&r.isVector2&&i.isVector2||r&&i&&r.isVector3&&i.isVector3||r&&i&&r.isMatrix3&&i.isMatrix3?r.copy(i):this[t]=i}}toJSON(e){const t=e===void 0||typeof e=="string";if(!t&&e.textures[this.uuid]!==void 0)return e.textures[this.uuid];const i={metadata:{version:4.7,type:"Texture",generator:"Texture.toJSON"},uuid:this.uuid,name:this.name,image:this.source.toJSON(e).uuid,mapping:this.mapping,channel:this.channel,repeat:[this.repeat.x,this.repeat.y],offset:[this.offset.x,this.offset.y],center:[this.center.x,this.center.y],rotation:this.rotation,wrap:[this.wrapS,this.wrapT],format:this.format,internalFormat:this.internalFormat,type:this.type,normalized:this.normalized,colorSpace:this.colorSpace,minFilter:this.minFilter,magFilter:this.magFilter,anisotropy:this.anisotropy,flipY:this.flipY,generateMipmaps:this.generateMipmaps,mipmapsAutoUpdate:this.mipmapsAutoUpdate,premultiplyAlpha:this.premultiplyAlpha,unpackAlignment:this.unpackAlignment};return Object.keys(this.userData).length>0&&(i.userData=this.userData),t||(e.textures[this.uuid]=i),i}dispose(){this.dispatchEvent({type:"dispose"})}transformUv(e){if(this.mapping!==Rf)return e;if(e.applyMatrix3(this.matrix),e.x<0||e.x>1)switch(this.wrapS){case ml:e.x=e.x-Math.floor(e.x);break;case ai:e.x=e.x<0?0:1;break;case gl:Math.abs(Math.floor(e.x)%2)===1?e.x=Math.ceil(e.x)-e.x:e.x=e.x-Math.floor(e.x);break}if(e.y<0||e.y>1)switch(this.wrapT){case ml:e.y=e.y-Math.floor(e.y);break;case ai:e.y=e.y<0?0:1;break;case gl:Math.abs(Math.floor(e.y)%2)===1?e.y=Math.ceil(e.y)-e.y:e.y=e.y-Math.floor(e.y);break}return this.flipY&&(e.y=1-e.y),e}set needsUpdate(e){e===!0&&(this.version++,this.source.needsUpdate=!0)}set needsPMREMUpdate(e){e===!0&&this.pmremVersion++}}Zt.DEFAULT_IMAGE=null,Zt.DEFAULT_MAPPING=Rf,Zt.DEFAULT_ANISOTROPY=1;class at{static{this.prototype.isVector4=!0}constructor(e=0,t=0,i=0,r=1){this.x=e,this.y=t,this.z=i,this.w=r}get width(){return this.z}set width(e){this.z=e}get height(){return this.w}set height(e){this.w=e}set(e,t,i,r){return this.x=e,this.y=t,this.z=i,this.w=r,this}setScalar(e){return this.x=e,this.y=e,this.z=e,this.w=e,this}setX(e){return this.x=e,this}setY(e){return this.y=e,this}setZ(e){return this.z=e,this}setW(e){return this.w=e,this}setComponent(e,t){switch(e){case 0:this.x=t;break;case 1:this.y=t;break;case 2:this.z=t;break;case 3:this.w=t;break;default:throw new Error("THREE.Vector4: index is out of range: "+e)}return this}getComponent(e){switch(e){case 0:return this.x;case 1:return this.y;case 2:return this.z;case 3:return this.w;default:throw new Error("THREE.Vector4: index is out of range: "+e)}}clone(){return new this.constructor(this.x,this.y,this.z,this.w)}copy(e){return this.x=e.x,this.y=e.y,this.z=e.z,this.w=e.w!==void 0?e.w:1,this}add(e){return this.x+=e.x,this.y+=e.y,this.z+=e.z,this.w+=e.w,this}addScalar(e){return this.x+=e,this.y+=e,this.z+=e,this.w+=e,this}addVectors(e,t){return this.x=e.x+t.x,this.y=e.y+t.y,this.z=e.z+t.z,this.w=e.w+t.w,this}addScaledVector(e,t){return this.x+=e.x*t,this.y+=e.y*t,this.z+=e.z*t,this.w+=e.w*t,this}sub(e){return this.x-=e.x,this.y-=e.y,this.z-=e.z,this.w-=e.w,this}subScalar(e){return this.x-=e,this.y-=e,this.z-=e,this.w-=e,this}subVectors(e,t){return this.x=e.x-t.x,this.y=e.y-t.y,this.z=e.z-t.z,this.w=e.w-t.w,this}multiply(e){return this.x*=e.x,this.y*=e.y,this.z*=e.z,this.w*=e.w,this}multiplyScalar(e){return this.x*=e,this.y*=e,this.z*=e,this.w*=e,this}applyMatrix4(e){const t=this.x,i=this.y,r=this.z,s=this.w,a=e.elements;return this.x=a[0]*t+a[4]*i+a[8]*r+a[12]*s,this.y=a[1]*t+a[5]*i+a[9]*r+a[13]*s,this.z=a[2]*t+a[6]*i+a[10]*r+a[14]*s,this.w=a[3]*t+a[7]*i+a[11]*r+a[15]*s,this}divide(e){return this.x/=e.x,this.y/=e.y,this.z/=e.z,this.w/=e.w,this}divideScalar(e){return this.multiplyScalar(1/e)}setAxisAngleFromQuaternion(e){this.w=2*Math.acos(e.w);const t=Math.sqrt(1-e.w*e.w);return t<1e-4?(this.x=1,this.y=0,this.z=0):(this.x=e.x/t,this.y=e.y/t,this.z=e.z/t),this}setAxisAngleFromRotationMatrix(e){let t,i,r,s;const l=e.elements,c=l[0],f=l[4],d=l[8],u=l[1],h=l[5],g=l[9],x=l[2],m=l[6],p=l[10];if(Math.abs(f-u)<.01&&Math.abs(d-x)<.01&&Math.abs(g-m)<.01){if(Math.abs(f+u)<.1&&Math.abs(d+x)<.1&&Math.abs(g+m)<.1&&Math.abs(c+h+p-3)<.1)return this.set(1,0,0,0),this;t=Math.PI;const M=(c+1)/2,S=(h+1)/2,b=(p+1)/2,w=(f+u)/4,_=(d+x)/4,y=(g+m)/4;return M>S&&M>b?M<.01?(i=0,r=.707106781,s=.707106781):(i=Math.sqrt(M),r=w/i,s=_/i):S>b?S<.01?(i=.707106781,r=0,s=.707106781):(r=Math.sqrt(S),i=w/r,s=y/r):b<.01?(i=.707106781,r=.707106781,s=0):(s=Math.sqrt(b),i=_/s,r=y/s),this.set(i,r,s,t),this}let v=Math.sqrt((m-g)*(m-g)+(d-x)*(d-x)+(u-f)*(u-f));return Math.abs(v)<.001&&(v=1),this.x=(m-g)/v,this.y=(d-x)/v,this.z=(u-f)/v,this.w=Math.acos((c+h+p-1)/2),this}setFromMatrixPosition(e){const t=e.elements;return this.x=t[12],this.y=t[13],this.z=t[14],this.w=t[15],this}min(e){return this.x=Math.min(this.x,e.x),this.y=Math.min(this.y,e.y),this.z=Math.min(this.z,e.z),this.w=Math.min(this.w,e.w),this}max(e){return this.x=Math.max(this.x,e.x),this.y=Math.max(this.y,e.y),this.z=Math.max(this.z,e.z),this.w=Math.max(this.w,e.w),this}clamp(e,t){return this.x=Oe(this.x,e.x,t.x),this.y=Oe(this.y,e.y,t.y),this.z=Oe(this.z,e.z,t.z),this.w=Oe(this.w,e.w,t.w),this}clampScalar(e,t){return this.x=Oe(this.x,e,t),this.y=Oe(this.y,e,t),this.z=Oe(this.z,e,t),this.w=Oe(this.w,e,t),this}clampLength(e,t){const i=this.length();return this.divideScalar(i||1).multiplyScalar(Oe(i,e,t))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this.z=Math.floor(this.z),this.w=Math.floor(this.w),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this.z=Math.ceil(this.z),this.w=Math.ceil(this.w),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this.z=Math.round(this.z),this.w=Math.round(this.w),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this.z=Math.trunc(this.z),this.w=Math.trunc(this.w),this}negate(){return this.x=-this.x,this.y=-this.y,this.z=-this.z,this.w=-this.w,this}dot(e){return this.x*e.x+this.y*e.y+this.z*e.z+this.w*e.w}lengthSq(){return this.x*this.x+this.y*this.y+this.z*this.z+this.w*this.w}length(){return Math.sqrt(this.x*this.x+this.y*this.y+this.z*this.z+this.w*this.w)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)+Math.abs(this.z)+Math.abs(this.w)}normalize(){return this.divideScalar(this.length()||1)}setLength(e){return this.normalize().multiplyScalar(e)}lerp(e,t){return this.x+=(e.x-this.x)*t,this.y+=(e.y-this.y)*t,this.z+=(e.z-this.z)*t,this.w+=(e.w-this.w)*t,this}lerpVectors(e,t,i){return this.x=e.x+(t.x-e.x)*i,this.y=e.y+(t.y-e.y)*i,this.z=e.z+(t.z-e.z)*i,this.w=e.w+(t.w-e.w)*i,this}equals(e){return e.x===this.x&&e.y===this.y&&e.z===this.z&&e.w===this.w}fromArray(e,t=0){return this.x=e[t],this.y=e[t+1],this.z=e[t+2],this.w=e[t+3],this}toArray(e=[],t=0){return e[t]=this.x,e[t+1]=this.y,e[t+2]=this.z,e[t+3]=this.w,e}fromBufferAttribute(e,t){return this.x=e.getX(t),this.y=e.getY(t),this.z=e.getZ(t),this.w=e.getW(t),this}random(){return this.x=Math.random(),this.y=Math.random(),this.z=Math.random(),this.w=Math.random(),this}*[Symbol.iterator](){yield this.x,yield this.y,yield this.z,yield this.w}}class Jm extends Ji{constructor(e=1,t=1,i={}){super(),i=Object.assign({generateMipmaps:!1,internalFormat:null,minFilter:tn,depthBuffer:!0,stencilBuffer:!1,resolveColorBuffer:!0,resolveDepthBuffer:!0,resolveStencilBuffer:!0,storeMultisampledColorBuffer:!0,storeMultisampledDepthBuffer:!0,storeMultisampledStencilBuffer:!0,depthTexture:null,samples:0,count:1,depth:1,multiview:!1,useArrayDepthTexture:!1},i),this.isRenderTarget=!0,this.width=e,this.height=t,this.depth=i.depth,this.scissor=new at(0,0,e,t),this.scissorTest=!1,this.viewport=new at(0,0,e,t),this.textures=[];const r=i.count;for(let s=0;s<r;s++)this.textures[s]=new Zt({width:e,height:t,depth:i.depth}),this.textures[s].isRenderTargetTexture=!0,this.textures[s].renderTarget=this;this._setTextureOptions(i),this.depthBuffer=i.depthBuffer,this.stencilBuffer=i.stencilBuffer,this.resolveColorBuffer=i.resolveColorBuffer,this.resolveDepthBuffer=i.resolveDepthBuffer,this.resolveStencilBuffer=i.resolveStencilBuffer,this.storeMultisampledColorBuffer=i.storeMultisampledColorBuffer,this.storeMultisampledDepthBuffer=i.storeMultisampledDepthBuffer,this.storeMultisampledStencilBuffer=i.storeMultisampledStencilBuffer,this._depthTexture=null,this.depthTexture=i.depthTexture,this.samples=i.samples,this.multiview=i.multiview,this.useArrayDepthTexture=i.useArrayDepthTexture}_setTextureOptions(e={}){const t={minFilter:tn,generateMipmaps:!1,flipY:!1,internalFormat:null};e.mapping!==void 0&&(t.mapping=e.mapping),e.wrapS!==void 0&&(t.wrapS=e.wrapS),e.wrapT!==void 0&&(t.wrapT=e.wrapT),e.wrapR!==void 0&&(t.wrapR=e.wrapR),e.magFilter!==void 0&&(t.magFilter=e.magFilter),e.minFilter!==void 0&&(t.minFilter=e.minFilter),e.format!==void 0&&(t.format=e.format),e.type!==void 0&&(t.type=e.type),e.anisotropy!==void 0&&(t.anisotropy=e.anisotropy),e.colorSpace!==void 0&&(t.colorSpace=e.colorSpace),e.flipY!==void 0&&(t.flipY=e.flipY),e.generateMipmaps!==void 0&&(t.generateMipmaps=e.generateMipmaps),e.mipmapsAutoUpdate!==void 0&&(t.mipmapsAutoUpdate=e.mipmapsAutoUpdate),e.internalFormat!==void 0&&(t.internalFormat=e.internalFormat);for(let i=0;i<this.textures.length;i++)this.textures[i].setValues(t)}get texture(){return this.textures[0]}set texture(e){this.textures[0]=e}set depthTexture(e){this._depthTexture!==null&&this._depthTexture.renderTarget===this&&(this._depthTexture.renderTarget=null),e!==null&&e.renderTarget===null&&(e.renderTarget=this),this._depthTexture=e}get depthTexture(){return this._depthTexture}setSize(e,t,i=1){if(this.width!==e||this.height!==t||this.depth!==i){this.width=e,this.height=t,this.depth=i;for(let r=0,s=this.textures.length;r<s;r++)this.textures[r].image.width=e,this.textures[r].image.height=t,this.textures[r].image.depth=i,this.textures[r].isData3DTexture!==!0&&(this.textures[r].isArrayTexture=this.textures[r].image.depth>1);this.dispose()}this.viewport.set(0,0,e,t),this.scissor.set(0,0,e,t)}clone(){return new this.constructor().copy(this)}copy(e){this.width=e.width,this.height=e.height,this.depth=e.depth,this.scissor.copy(e.scissor),this.scissorTest=e.scissorTest,this.viewport.copy(e.viewport),this.textures.length=0;for(let t=0,i=e.textures.length;t<i;t++){this.textures[t]=e.textures[t].clone(),this.textures[t].isRenderTargetTexture=!0,this.textures[t].renderTarget=this;const r=Object.assign({},e.textures[t].image);this.textures[t].source=new lc(r)}if(this.depthBuffer=e.depthBuffer,this.stencilBuffer=e.stencilBuffer,this.resolveColorBuffer=e.resolveColorBuffer,this.resolveDepthBuffer=e.resolveDepthBuffer,this.resolveStencilBuffer=e.resolveStencilBuffer,this.storeMultisampledColorBuffer=e.storeMultisampledColorBuffer,this.storeMultisampledDepthBuffer=e.storeMultisampledDepthBuffer,this.storeMultisampledStencilBuffer=e.storeMultisampledStencilBuffer,e.depthTexture!==null)if(e.depthTexture.renderTarget===e){const t=e.depthTexture.clone();t.renderTarget=null,this.depthTexture=t}else this.depthTexture=e.depthTexture;else this.depthTexture=null;return this.samples=e.samples,this.multiview=e.multiview,this.useArrayDepthTexture=e.useArrayDepthTexture,this}dispose(){this.dispatchEvent({type:"dispose"})}}class Rn extends Jm{constructor(e=1,t=1,i={}){super(e,t,i),this.isWebGLRenderTarget=!0}}class $f extends Zt{constructor(e=null,t=1,i=1,r=1){super(null),this.isDataArrayTexture=!0,this.image={data:e,width:t,height:i,depth:r},this.magFilter=Ot,this.minFilter=Ot,this.wrapR=ai,this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1,this.layerUpdates=new Set}copy(e){return super.copy(e),this.wrapR=e.wrapR,this}addLayerUpdate(e){this.layerUpdates.add(e)}clearLayerUpdates(){this.layerUpdates.clear()}}class Qm extends Zt{constructor(e=null,t=1,i=1,r=1){super(null),this.isData3DTexture=!0,this.image={data:e,width:t,height:i,depth:r},this.magFilter=Ot,this.minFilter=Ot,this.wrapR=ai,this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1}copy(e){return super.copy(e),this.wrapR=e.wrapR,this}}class je{static{this.prototype.isMatrix4=!0}constructor(e,t,i,r,s,a,o,l,c,f,d,u,h,g,x,m){this.elements=[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],e!==void 0&&this.set(e,t,i,r,s,a,o,l,c,f,d,u,h,g,x,m)}set(e,t,i,r,s,a,o,l,c,f,d,u,h,g,x,m){const p=this.elements;return p[0]=e,p[4]=t,p[8]=i,p[12]=r,p[1]=s,p[5]=a,p[9]=o,p[13]=l,p[2]=c,p[6]=f,p[10]=d,p[14]=u,p[3]=h,p[7]=g,p[11]=x,p[15]=m,this}identity(){return this.set(1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1),this}clone(){return new je().fromArray(this.elements)}copy(e){const t=this.elements,i=e.elements;return t[0]=i[0],t[1]=i[1],t[2]=i[2],t[3]=i[3],t[4]=i[4],t[5]=i[5],t[6]=i[6],t[7]=i[7],t[8]=i[8],t[9]=i[9],t[10]=i[10],t[11]=i[11],t[12]=i[12],t[13]=i[13],t[14]=i[14],t[15]=i[15],this}copyPosition(e){const t=this.elements,i=e.elements;return t[12]=i[12],t[13]=i[13],t[14]=i[14],this}setFromMatrix3(e){const t=e.elements;return this.set(t[0],t[3],t[6],0,t[1],t[4],t[7],0,t[2],t[5],t[8],0,0,0,0,1),this}extractBasis(e,t,i){return this.determinantAffine()===0?(e.set(1,0,0),t.set(0,1,0),i.set(0,0,1),this):(e.setFromMatrixColumn(this,0),t.setFromMatrixColumn(this,1),i.setFromMatrixColumn(this,2),this)}makeBasis(e,t,i){return this.set(e.x,t.x,i.x,0,e.y,t.y,i.y,0,e.z,t.z,i.z,0,0,0,0,1),this}extractRotation(e){if(e.determinantAffine()===0)return this.identity();const t=this.elements,i=e.elements,r=1/wr.setFromMatrixColumn(e,0).length(),s=1/wr.setFromMatrixColumn(e,1).length(),a=1/wr.setFromMatrixColumn(e,2).length();return t[0]=i[0]*r,t[1]=i[1]*r,t[2]=i[2]*r,t[3]=0,t[4]=i[4]*s,t[5]=i[5]*s,t[6]=i[6]*s,t[7]=0,t[8]=i[8]*a,t[9]=i[9]*a,t[10]=i[10]*a,t[11]=0,t[12]=0,t[13]=0,t[14]=0,t[15]=1,this}makeRotationFromEuler(e){const t=this.elements,i=e.x,r=e.y,s=e.z,a=Math.cos(i),o=Math.sin(i),l=Math.cos(r),c=Math.sin(r),f=Math.cos(s),d=Math.sin(s);if(e.order==="XYZ"){const u=a*f,h=a*d,g=o*f,x=o*d;t[0]=l*f,t[4]=-l*d,t[8]=c,t[1]=h+g*c,t[5]=u-x*c,t[9]=-o*l,t[2]=x-u*c,t[6]=g+h*c,t[10]=a*l}else if(e.order==="YXZ"){const u=l*f,h=l*d,g=c*f,x=c*d;t[0]=u+x*o,t[4]=g*o-h,t[8]=a*c,t[1]=a*d,t[5]=a*f,t[9]=-o,t[2]=h*o-g,t[6]=x+u*o,t[10]=a*l}else if(e.order==="ZXY"){const u=l*f,h=l*d,g=c*f,x=c*d;t[0]=u-x*o,t[4]=-a*d,t[8]=g+h*o,t[1]=h+g*o,t[5]=a*f,t[9]=x-u*o,t[2]=-a*c,t[6]=o,t[10]=a*l}else if(e.order==="ZYX"){const u=a*f,h=a*d,g=o*f,x=o*d;t[0]=l*f,t[4]=g*c-h,t[8]=u*c+x,t[1]=l*d,t[5]=x*c+u,t[9]=h*c-g,t[2]=-c,t[6]=o*l,t[10]=a*l}else if(e.order==="YZX"){const u=a*l,h=a*c,g=o*l,x=o*c;t[0]=l*f,t[4]=x-u*d,t[8]=g*d+h,t[1]=d,t[5]=a*f,t[9]=-o*f,t[2]=-c*f,t[6]=h*d+g,t[10]=u-x*d}else if(e.order==="XZY"){const u=a*l,h=a*c,g=o*l,x=o*c;t[0]=l*f,t[4]=-d,t[8]=c*f,t[1]=u*d+x,t[5]=a*f,t[9]=h*d-g,t[2]=g*d-h,t[6]=o*f,t[10]=x*d+u}return t[3]=0,t[7]=0,t[11]=0,t[12]=0,t[13]=0,t[14]=0,t[15]=1,this}makeRotationFromQuaternion(e){return this.compose(jm,e,eg)}lookAt(e,t,i){const r=this.elements;return on.subVectors(e,t),on.lengthSq()===0&&(on.z=1),on.normalize(),wi.crossVectors(i,on),wi.lengthSq()===0&&(Math.abs(i.z)===1?on.x+=1e-4:on.z+=1e-4,on.normalize(),wi.crossVectors(i,on)),wi.normalize(),Ta.crossVectors(on,wi),r[0]=wi.x,r[4]=Ta.x,r[8]=on.x,r[1]=wi.y,r[5]=Ta.y,r[9]=on.y,r[2]=wi.z,r[6]=Ta.z,r[10]=on.z,this}multiply(e){return this.multiplyMatrices(this,e)}premultiply(e){return this.multiplyMatrices(e,this)}multiplyMatrices(e,t){const i=e.elements,r=t.elements,s=this.elements,a=i[0],o=i[4],l=i[8],c=i[12],f=i[1],d=i[5],u=i[9],h=i[13],g=i[2],x=i[6],m=i[10],p=i[14],v=i[3],M=i[7],S=i[11],b=i[15],w=r[0],_=r[4],y=r[8],I=r[12],R=r[1],P=r[5],D=r[9],O=r[13],L=r[2],k=r[6],V=r[10],W=r[14],te=r[3],$=r[7],j=r[11],ee=r[15];return s[0]=a*w+o*R+l*L+c*te,s[4]=a*_+o*P+l*k+c*$,s[8]=a*y+o*D+l*V+c*j,s[12]=a*I+o*O+l*W+c*ee,s[1]=f*w+d*R+u*L+h*te,s[5]=f*_+d*P+u*k+h*$,s[9]=f*y+d*D+u*V+h*j,s[13]=f*I+d*O+u*W+h*ee,s[2]=g*w+x*R+m*L+p*te,s[6]=g*_+x*P+m*k+p*$,s[10]=g*y+x*D+m*V+p*j,s[14]=g*I+x*O+m*W+p*ee,s[3]=v*w+M*R+S*L+b*te,s[7]=v*_+M*P+S*k+b*$,s[11]=v*y+M*D+S*V+b*j,s[15]=v*I+M*O+S*W+b*ee,this}multiplyScalar(e){const t=this.elements;return t[0]*=e,t[4]*=e,t[8]*=e,t[12]*=e,t[1]*=e,t[5]*=e,t[9]*=e,t[13]*=e,t[2]*=e,t[6]*=e,t[10]*=e,t[14]*=e,t[3]*=e,t[7]*=e,t[11]*=e,t[15]*=e,this}determinant(){const e=this.elements,t=e[0],i=e[4],r=e[8],s=e[12],a=e[1],o=e[5],l=e[9],c=e[13],f=e[2],d=e[6],u=e[10],h=e[14],g=e[3],x=e[7],m=e[11],p=e[15],v=l*h-c*u,M=o*h-c*d,S=o*u-l*d,b=a*h-c*f,w=a*u-l*f,_=a*d-o*f;return t*(x*v-m*M+p*S)-i*(g*v-m*b+p*w)+r*(g*M-x*b+p*_)-s*(g*S-x*w+m*_)}determinantAffine(){const e=this.elements,t=e[0],i=e[4],r=e[8],s=e[1],a=e[5],o=e[9],l=e[2],c=e[6],f=e[10];return t*(a*f-o*c)-i*(s*f-o*l)+r*(s*c-a*l)}transpose(){const e=this.elements;let t;return t=e[1],e[1]=e[4],e[4]=t,t=e[2],e[2]=e[8],e[8]=t,t=e[6],e[6]=e[9],e[9]=t,t=e[3],e[3]=e[12],e[12]=t,t=e[7],e[7]=e[13],e[13]=t,t=e[11],e[11]=e[14],e[14]=t,this}setPosition(e,t,i){const r=this.elements;return e.isVector3?(r[12]=e.x,r[13]=e.y,r[14]=e.z):(r[12]=e,r[13]=t,r[14]=i),this}invert(){const e=this.elements,t=e[0],i=e[1],r=e[2],s=e[3],a=e[4],o=e[5],l=e[6],c=e[7],f=e[8],d=e[9],u=e[10],h=e[11],g=e[12],x=e[13],m=e[14],p=e[15],v=t*o-i*a,M=t*l-r*a,S=t*c-s*a,b=i*l-r*o,w=i*c-s*o,_=r*c-s*l,y=f*x-d*g,I=f*m-u*g,R=f*p-h*g,P=d*m-u*x,D=d*p-h*x,O=u*p-h*m,L=v*O-M*D+S*P+b*R-w*I+_*y;if(L===0)return this.set(0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0);const k=1/L;return e[0]=(o*O-l*D+c*P)*k,e[1]=(r*D-i*O-s*P)*k,e[2]=(x*_-m*w+p*b)*k,e[3]=(u*w-d*_-h*b)*k,e[4]=(l*R-a*O-c*I)*k,e[5]=(t*O-r*R+s*I)*k,e[6]=(m*S-g*_-p*M)*k,e[7]=(f*_-u*S+h*M)*k,e[8]=(a*D-o*R+c*y)*k,e[9]=(i*R-t*D-s*y)*k,e[10]=(g*w-x*S+p*v)*k,e[11]=(d*S-f*w-h*v)*k,e[12]=(o*I-a*P-l*y)*k,e[13]=(t*P-i*I+r*y)*k,e[14]=(x*M-g*b-m*v)*k,e[15]=(f*b-d*M+u*v)*k,this}scale(e){const t=this.elements,i=e.x,r=e.y,s=e.z;return t[0]*=i,t[4]*=r,t[8]*=s,t[1]*=i,t[5]*=r,t[9]*=s,t[2]*=i,t[6]*=r,t[10]*=s,t[3]*=i,t[7]*=r,t[11]*=s,this}getMaxScaleOnAxis(){const e=this.elements,t=e[0]*e[0]+e[1]*e[1]+e[2]*e[2],i=e[4]*e[4]+e[5]*e[5]+e[6]*e[6],r=e[8]*e[8]+e[9]*e[9]+e[10]*e[10];return Math.sqrt(Math.max(t,i,r))}makeTranslation(e,t,i){return e.isVector3?this.set(1,0,0,e.x,0,1,0,e.y,0,0,1,e.z,0,0,0,1):this.set(1,0,0,e,0,1,0,t,0,0,1,i,0,0,0,1),this}makeRotationX(e){const t=Math.cos(e),i=Math.sin(e);return this.set(1,0,0,0,0,t,-i,0,0,i,t,0,0,0,0,1),this}makeRotationY(e){const t=Math.cos(e),i=Math.sin(e);return this.set(t,0,i,0,0,1,0,0,-i,0,t,0,0,0,0,1),this}makeRotationZ(e){const t=Math.cos(e),i=Math.sin(e);return this.set(t,-i,0,0,i,t,0,0,0,0,1,0,0,0,0,1),this}makeRotationAxis(e,t){const i=Math.cos(t),r=Math.sin(t),s=1-i,a=e.x,o=e.y,l=e.z,c=s*a,f=s*o;return this.set(c*a+i,c*o-r*l,c*l+r*o,0,c*o+r*l,f*o+i,f*l-r*a,0,c*l-r*o,f*l+r*a,s*l*l+i,0,0,0,0,1),this}makeScale(e,t,i){return this.set(e,0,0,0,0,t,0,0,0,0,i,0,0,0,0,1),this}makeShear(e,t,i,r,s,a){return this.set(1,i,s,0,e,1,a,0,t,r,1,0,0,0,0,1),this}compose(e,t,i){const r=this.elements,s=t._x,a=t._y,o=t._z,l=t._w,c=s+s,f=a+a,d=o+o,u=s*c,h=s*f,g=s*d,x=a*f,m=a*d,p=o*d,v=l*c,M=l*f,S=l*d,b=i.x,w=i.y,_=i.z;return r[0]=(1-(x+p))*b,r[1]=(h+S)*b,r[2]=(g-M)*b,r[3]=0,r[4]=(h-S)*w,r[5]=(1-(u+p))*w,r[6]=(m+v)*w,r[7]=0,r[8]=(g+M)*_,r[9]=(m-v)*_,r[10]=(1-(u+x))*_,r[11]=0,r[12]=e.x,r[13]=e.y,r[14]=e.z,r[15]=1,this}decompose(e,t,i){const r=this.elements;e.x=r[12],e.y=r[13],e.z=r[14];const s=this.determinantAffine();if(s===0)return i.set(1,1,1),t.identity(),this;let a=wr.set(r[0],r[1],r[2]).length();const o=wr.set(r[4],r[5],r[6]).length(),l=wr.set(r[8],r[9],r[10]).length();s<0&&(a=-a),Cn.copy(this);const c=1/a,f=1/o,d=1/l;return Cn.elements[0]*=c,Cn.elements[1]*=c,Cn.elements[2]*=c,Cn.elements[4]*=f,Cn.elements[5]*=f,Cn.elements[6]*=f,Cn.elements[8]*=d,Cn.elements[9]*=d,Cn.elements[10]*=d,t.setFromRotationMatrix(Cn),i.x=a,i.y=o,i.z=l,this}makePerspective(e,t,i,r,s,a,o=wn,l=!1){const c=this.elements,f=2*s/(t-e),d=2*s/(i-r),u=(t+e)/(t-e),h=(i+r)/(i-r);let g,x;if(l)g=s/(a-s),x=a*s/(a-s);else if(o===wn)g=-(a+s)/(a-s),x=-2*a*s/(a-s);else if(o===ya)g=-a/(a-s),x=-a*s/(a-s);else throw new Error("THREE.Matrix4.makePerspective(): Invalid coordinate system: "+o);return c[0]=f,c[4]=0,c[8]=u,c[12]=0,c[1]=0,c[5]=d,c[9]=h,c[13]=0,c[2]=0,c[6]=0,c[10]=g,c[14]=x,c[3]=0,c[7]=0,c[11]=-1,c[15]=0,this}makeOrthographic(e,t,i,r,s,a,o=wn,l=!1){const c=this.elements,f=2/(t-e),d=2/(i-r),u=-(t+e)/(t-e),h=-(i+r)/(i-r);let g,x;if(l)g=1/(a-s),x=a/(a-s);else if(o===wn)g=-2/(a-s),x=-(a+s)/(a-s);else if(o===ya)g=-1/(a-s),x=-s/(a-s);else throw new Error("THREE.Matrix4.makeOrthographic(): Invalid coordinate system: "+o);return c[0]=f,c[4]=0,c[8]=0,c[12]=u,c[1]=0,c[5]=d,c[9]=0,c[13]=h,c[2]=0,c[6]=0,c[10]=g,c[14]=x,c[3]=0,c[7]=0,c[11]=0,c[15]=1,this}equals(e){const t=this.elements,i=e.elements;for(let r=0;r<16;r++)if(t[r]!==i[r])return!1;return!0}fromArray(e,t=0){for(let i=0;i<16;i++)this.elements[i]=e[i+t];return this}toArray(e=[],t=0){const i=this.elements;return e[t]=i[0],e[t+1]=i[1],e[t+2]=i[2],e[t+3]=i[3],e[t+4]=i[4],e[t+5]=i[5],e[t+6]=i[6],e[t+7]=i[7],e[t+8]=i[8],e[t+9]=i[9],e[t+10]=i[10],e[t+11]=i[11],e[t+12]=i[12],e[t+13]=i[13],e[t+14]=i[14],e[t+15]=i[15],e}}const wr=new N,Cn=new je,jm=new N(0,0,0),eg=new N(1,1,1),wi=new N,Ta=new N,on=new N,qf=new je,Yf=new Ai;class Qi{constructor(e=0,t=0,i=0,r=Qi.DEFAULT_ORDER){this.isEuler=!0,this._x=e,this._y=t,this._z=i,this._order=r}get x(){return this._x}set x(e){this._x=e,this._onChangeCallback()}get y(){return this._y}set y(e){this._y=e,this._onChangeCallback()}get z(){return this._z}set z(e){this._z=e,this._onChangeCallback()}get order(){return this._order}set order(e){this._order=e,this._onChangeCallback()}set(e,t,i,r=this._order){return this._x=e,this._y=t,this._z=i,this._order=r,this._onChangeCallback(),this}clone(){return new this.constructor(this._x,this._y,this._z,this._order)}copy(e){return this._x=e._x,this._y=e._y,this._z=e._z,this._order=e._order,this._onChangeCallback(),this}setFromRotationMatrix(e,t=this._order,i=!0){const r=e.elements,s=r[0],a=r[4],o=r[8],l=r[1],c=r[5],f=r[9],d=r[2],u=r[6],h=r[10];switch(t){case"XYZ":this._y=Math.asin(Oe(o,-1,1)),Math.abs(o)<.9999999?(this._x=Math.atan2(-f,h),this._z=Math.atan2(-a,s)):(this._x=Math.atan2(u,c),this._z=0);break;case"YXZ":this._x=Math.asin(-Oe(f,-1,1)),Math.abs(f)<.9999999?(this._y=Math.atan2(o,h),this._z=Math.atan2(l,c)):(this._y=Math.atan2(-d,s),this._z=0);break;case"ZXY":this._x=Math.asin(Oe(u,-1,1)),Math.abs(u)<.9999999?(this._y=Math.atan2(-d,h),this._z=Math.atan2(-a,c)):(this._y=0,this._z=Math.atan2(l,s));break;case"ZYX":this._y=Math.asin(-Oe(d,-1,1)),Math.abs(d)<.9999999?(this._x=Math.atan2(u,h),this._z=Math.atan2(l,s)):(this._x=0,this._z=Math.atan2(-a,c));break;case"YZX":this._z=Math.asin(Oe(l,-1,1)),Math.abs(l)<.9999999?(this._x=Math.atan2(-f,c),this._y=Math.atan2(-d,s)):(this._x=0,this._y=Math.atan2(o,h));break;case"XZY":this._z=Math.asin(-Oe(a,-1,1)),Math.abs(a)<.9999999?(this._x=Math.atan2(u,c),this._y=Math.atan2(o,s)):(this._x=Math.atan2(-f,h),this._y=0);break;default:Pe("Euler: .setFromRotationMatrix() encountered an unknown order: "+t)}return this._order=t,i===!0&&this._onChangeCallback(),this}setFromQuaternion(e,t,i){return qf.makeRotationFromQuaternion(e),this.setFromRotationMatrix(qf,t,i)}setFromVector3(e,t=this._order){return this.set(e.x,e.y,e.z,t)}reorder(e){return Yf.setFromEuler(this),this.setFromQuaternion(Yf,e)}equals(e){return e._x===this._x&&e._y===this._y&&e._z===this._z&&e._order===this._order}fromArray(e){return this._x=e[0],this._y=e[1],this._z=e[2],e[3]!==void 0&&(this._order=e[3]),this._onChangeCallback(),this}toArray(e=[],t=0){return e[t]=this._x,e[t+1]=this._y,e[t+2]=this._z,e[t+3]=this._order,e}_onChange(e){return this._onChangeCallback=e,this}_onChangeCallback(){}*[Symbol.iterator](){yield this._x,yield this._y,yield this._z,yield this._order}}Qi.DEFAULT_ORDER="XYZ";class Kf{constructor(){this.mask=1}set(e){this.mask=(1<<e|0)>>>0}enable(e){this.mask|=1<<e|0}enableAll(){this.mask=-1}toggle(e){this.mask^=1<<e|0}disable(e){this.mask&=~(1<<e|0)}disableAll(){this.mask=0}test(e){return(this.mask&e.mask)!==0}isEnabled(e){return(this.mask&(1<<e|0))!==0}}let tg=0;const Zf=new N,Rr=new Ai,li=new je,Aa=new N,Rs=new N,ng=new N,ig=new Ai,Jf=new N(1,0,0),Qf=new N(0,1,0),jf=new N(0,0,1),ed={type:"added"},rg={type:"removed"},Cr={type:"childadded",child:null},fc={type:"childremoved",child:null};class nn extends Ji{constructor(){super(),this.isObject3D=!0,Object.defineProperty(this,"id",{value:tg++}),this.uuid=ws(),this.name="",this.type="Object3D",this.parent=null,this.children=[],this.up=nn.DEFAULT_UP.clone();const e=new N,t=new Qi,i=new Ai,r=new N(1,1,1);function s(){i.setFromEuler(t,!1)}function a(){t.setFromQuaternion(i,void 0,!1)}t._onChange(s),i._onChange(a),Object.defineProperties(this,{position:{configurable:!0,enumerable:!0,value:e},rotation:{configurable:!0,enumerable:!0,value:t},quaternion:{configurable:!0,enumerable:!0,value:i},scale:{configurable:!0,enumerable:!0,value:r},modelViewMatrix:{value:new je},normalMatrix:{value:new Fe}}),this.matrix=new je,this.matrixWorld=new je,this.matrixAutoUpdate=nn.DEFAULT_MATRIX_AUTO_UPDATE,this.matrixWorldAutoUpdate=nn.DEFAULT_MATRIX_WORLD_AUTO_UPDATE,this.matrixWorldNeedsUpdate=!1,this.layers=new Kf,this.visible=!0,this.castShadow=!1,this.receiveShadow=!1,this.frustumCulled=!0,this.renderOrder=0,this.animations=[],this.customDepthMaterial=void 0,this.customDistanceMaterial=void 0,this.static=!1,this.userData={},this.pivot=null}onBeforeShadow(){}onAfterShadow(){}onBeforeRender(){}onAfterRender(){}applyMatrix4(e){this.matrixAutoUpdate&&this.updateMatrix(),this.matrix.premultiply(e),this.matrix.decompose(this.position,this.quaternion,this.scale),this.pivot!==null&&this.position.copy(this.pivot).applyMatrix4(this.matrix).sub(this.pivot)}applyQuaternion(e){return this.quaternion.premultiply(e),this}setRotationFromAxisAngle(e,t){this.quaternion.setFromAxisAngle(e,t)}setRotationFromEuler(e){this.quaternion.setFromEuler(e,!0)}setRotationFromMatrix(e){this.quaternion.setFromRotationMatrix(e)}setRotationFromQuaternion(e){this.quaternion.copy(e)}rotateOnAxis(e,t){return Rr.setFromAxisAngle(e,t),this.quaternion.multiply(Rr),this}rotateOnWorldAxis(e,t){return Rr.setFromAxisAngle(e,t),this.quaternion.premultiply(Rr),this}rotateX(e){return this.rotateOnAxis(Jf,e)}rotateY(e){return this.rotateOnAxis(Qf,e)}rotateZ(e){return this.rotateOnAxis(jf,e)}translateOnAxis(e,t){return Zf.copy(e).applyQuaternion(this.quaternion),this.position.add(Zf.multiplyScalar(t)),this}translateX(e){return this.translateOnAxis(Jf,e)}translateY(e){return this.translateOnAxis(Qf,e)}translateZ(e){return this.translateOnAxis(jf,e)}localToWorld(e){return this.updateWorldMatrix(!0,!1),e.applyMatrix4(this.matrixWorld)}worldToLocal(e){return this.updateWorldMatrix(!0,!1),e.applyMatrix4(li.copy(this.matrixWorld).invert())}lookAt(e,t,i){e.isVector3?Aa.copy(e):Aa.set(e,t,i);const r=this.parent;this.updateWorldMatrix(!0,!1),Rs.setFromMatrixPosition(this.matrixWorld),this.isCamera||this.isLight?li.lookAt(Rs,Aa,this.up):li.lookAt(Aa,Rs,this.up),this.quaternion.setFromRotationMatrix(li),r&&(li.extractRotation(r.matrixWorld),Rr.setFromRotationMatrix(li),this.quaternion.premultiply(Rr.invert()))}add(e){if(arguments.length>1){for(let t=0;t<arguments.length;t++)this.add(arguments[t]);return this}return e===this?(Ke("Object3D.add: object can't be added as a child of itself.",e),this):(e&&e.isObject3D?(e.removeFromParent(),e.parent=this,this.children.push(e),e.dispatchEvent(ed),Cr.child=e,this.dispatchEvent(Cr),Cr.child=null):Ke("Object3D.add: object not an instance of THREE.Object3D.",e),this)}remove(e){if(arguments.length>1){for(let i=0;i<arguments.length;i++)this.remove(arguments[i]);return this}const t=this.children.indexOf(e);return t!==-1&&(e.parent=null,this.children.splice(t,1),e.dispatchEvent(rg),fc.child=e,this.dispatchEvent(fc),fc.child=null),this}removeFromParent(){const e=this.parent;return e!==null&&e.remove(this),this}clear(){return this.remove(...this.children)}attach(e){return this.updateWorldMatrix(!0,!1),li.copy(this.matrixWorld).invert(),e.parent!==null&&(e.parent.updateWorldMatrix(!0,!1),li.multiply(e.parent.matrixWorld)),e.applyMatrix4(li),e.removeFromParent(),e.parent=this,this.children.push(e),e.updateWorldMatrix(!1,!0),e.dispatchEvent(ed),Cr.child=e,this.dispatchEvent(Cr),Cr.child=null,this}getObjectById(e){return this.getObjectByProperty("id",e)}getObjectByName(e){return this.getObjectByProperty("name",e)}getObjectByProperty(e,t){if(this[e]===t)return this;for(let i=0,r=this.children.length;i<r;i++){const a=this.children[i].getObjectByProperty(e,t);if(a!==void 0)return a}}getObjectsByProperty(e,t,i=[]){this[e]===t&&i.push(this);const r=this.children;for(let s=0,a=r.length;s<a;s++)r[s].getObjectsByProperty(e,t,i);return i}getWorldPosition(e){return this.updateWorldMatrix(!0,!1),e.setFromMatrixPosition(this.matrixWorld)}getWorldQuaternion(e){return this.updateWorldMatrix(!0,!1),this.matrixWorld.decompose(Rs,e,ng),e}getWorldScale(e){return this.updateWorldMatrix(!0,!1),this.matrixWorld.decompose(Rs,ig,e),e}getWorldDirection(e){this.updateWorldMatrix(!0,!1);const t=this.matrixWorld.elements;return e.set(t[8],t[9],t[10]).normalize()}raycast(){}intersectsFrustum(){return!0}traverse(e){e(this);const t=this.children;for(let i=0,r=t.length;i<r;i++)t[i].traverse(e)}traverseVisible(e){if(this.visible===!1)return;e(this);const t=this.children;for(let i=0,r=t.length;i<r;i++)t[i].traverseVisible(e)}traverseAncestors(e){const t=this.parent;t!==null&&(e(t),t.traverseAncestors(e))}updateMatrix(){this.matrix.compose(this.position,this.quaternion,this.scale);const e=this.pivot;if(e!==null){const t=e.x,i=e.y,r=e.z,s=this.matrix.elements;s[12]+=t-s[0]*t-s[4]*i-s[8]*r,s[13]+=i-s[1]*t-s[5]*i-s[9]*r,s[14]+=r-s[2]*t-s[6]*i-s[10]*r}this.matrixWorldNeedsUpdate=!0}updateMatrixWorld(e){this.matrixAutoUpdate&&this.updateMatrix(),(this.matrixWorldNeedsUpdate||e)&&(this.matrixWorldAutoUpdate===!0&&(this.parent===null?this.matrixWorld.copy(this.matrix):this.matrixWorld.multiplyMatrices(this.parent.matrixWorld,this.matrix)),this.matrixWorldNeedsUpdate=!1,e=!0);const t=this.children;for(let i=0,r=t.length;i<r;i++)t[i].updateMatrixWorld(e)}updateWorldMatrix(e,t,i=!1){const r=this.parent;if(e===!0&&r!==null&&r.updateWorldMatrix(!0,!1),this.matrixAutoUpdate&&this.updateMatrix(),(this.matrixWorldNeedsUpdate||i)&&(this.matrixWorldAutoUpdate===!0&&(this.parent===null?this.matrixWorld.copy(this.matrix):this.matrixWorld.multiplyMatrices(this.parent.matrixWorld,this.matrix)),this.matrixWorldNeedsUpdate=!1,i=!0),t===!0){const s=this.children;for(let a=0,o=s.length;a<o;a++)s[a].updateWorldMatrix(!1,!0,i)}}toJSON(e){const t=e===void 0||typeof e=="string",i={};t&&(e={geometries:{},materials:{},textures:{},images:{},shapes:{},skeletons:{},animations:{},nodes:{}},i.metadata={version:4.7,type:"Object",generator:"Object3D.toJSON"});const r={};r.uuid=this.uuid,r.type=this.type,r.name=this.name,r.castShadow=this.castShadow,r.receiveShadow=this.receiveShadow,r.visible=this.visible,r.frustumCulled=this.frustumCulled,r.renderOrder=this.renderOrder,r.static=this.static,r.matrixAutoUpdate=this.matrixAutoUpdate,Object.keys(this.userData).length>0&&(r.userData=this.userData),r.layers=this.layers.mask,r.matrix=this.matrix.toArray(),r.up=this.up.toArray(),this.pivot!==null&&(r.pivot=this.pivot.toArray()),this.morphTargetDictionary!==void 0&&(r.morphTargetDictionary=Object.assign({},this.morphTargetDictionary)),this.morphTargetInfluences!==void 0&&(r.morphTargetInfluences=this.morphTargetInfluences.slice()),this.isInstancedMesh&&(r.type="InstancedMesh",r.count=this.count,r.instanceMatrix=this.instanceMatrix.toJSON(),this.instanceColor!==null&&(r.instanceColor=this.instanceColor.toJSON())),this.isBatchedMesh&&(r.type="BatchedMesh",r.perObjectFrustumCulled=this.perObjectFrustumCulled,r.sortObjects=this.sortObjects,r.drawRanges=this._drawRanges,r.reservedRanges=this._reservedRanges,r.geometryInfo=this._geometryInfo.map(o=>({...o,boundingBox:o.boundingBox?o.boundingBox.toJSON():void 0,boundingSphere:o.boundingSphere?o.boundingSphere.toJSON():void 0})),r.instanceInfo=this._instanceInfo.map(o=>({...o})),r.availableInstanceIds=this._availableInstanceIds.slice(),r.availableGeometryIds=this._availableGeometryIds.slice(),r.nextIndexStart=this._nextIndexStart,r.nextVertexStart=this._nextVertexStart,r.geometryCount=this._geometryCount,r.maxInstanceCount=this._maxInstanceCount,r.maxVertexCount=this._maxVertexCount,r.maxIndexCount=this._maxIndexCount,r.geometryInitialized=this._geometryInitialized,r.matricesTexture=this._matricesTexture.toJSON(e),r.indirectTexture=this._indirectTexture.toJSON(e),this._colorsTexture!==null&&(r.colorsTexture=this._colorsTexture.toJSON(e)),this.boundingSphere!==null&&(r.boundingSphere=this.boundingSphere.toJSON()),this.boundingBox!==null&&(r.boundingBox=this.boundingBox.toJSON()));function s(o,l){return o[l.uuid]===void 0&&(o[l.uuid]=l.toJSON(e)),l.uuid}if(this.isScene)this.background&&(this.background.isColor?r.background=this.background.toJSON():this.background.isTexture&&(r.background=this.background.toJSON(e).uuid)),this.environment&&this.environment.isTexture&&this.environment.isRenderTargetTexture!==!0&&(r.environment=this.environment.toJSON(e).uuid);else if(this.isMesh||this.isLine||this.isPoints){r.geometry=s(e.geometries,this.geometry);const o=this.geometry.parameters;if(o!==void 0&&o.shapes!==void 0){const l=o.shapes;if(Array.isArray(l))for(let c=0,f=l.length;c<f;c++){const d=l[c];s(e.shapes,d)}else s(e.shapes,l)}}if(this.isSkinnedMesh&&(r.bindMode=this.bindMode,r.bindMatrix=this.bindMatrix.toArray(),this.skeleton!==void 0&&(s(e.skeletons,this.skeleton),r.skeleton=this.skeleton.uuid)),this.material!==void 0)if(Array.isArray(this.material)){const o=[];for(let l=0,c=this.material.length;l<c;l++)o.push(s(e.materials,this.material[l]));r.material=o}else r.material=s(e.materials,this.material);if(this.children.length>0){r.children=[];for(let o=0;o<this.children.length;o++)r.children.push(this.children[o].toJSON(e).object)}if(this.animations.length>0){r.animations=[];for(let o=0;o<this.animations.length;o++){const l=this.animations[o];r.animations.push(s(e.animations,l))}}if(t){const o=a(e.geometries),l=a(e.materials),c=a(e.textures),f=a(e.images),d=a(e.shapes),u=a(e.skeletons),h=a(e.animations),g=a(e.nodes);o.length>0&&(i.geometries=o),l.length>0&&(i.materials=l),c.length>0&&(i.textures=c),f.length>0&&(i.images=f),d.length>0&&(i.shapes=d),u.length>0&&(i.skeletons=u),h.length>0&&(i.animations=h),g.length>0&&(i.nodes=g)}return i.object=r,i;function a(o){const l=[];for(const c in o){const f=o[c];delete f.metadata,l.push(f)}return l}}clone(e){return new this.constructor().copy(this,e)}copy(e,t=!0){if(this.name=e.name,this.up.copy(e.up),this.position.copy(e.position),this.rotation.order=e.rotation.order,this.quaternion.copy(e.quaternion),this.scale.copy(e.scale),this.pivot=e.pivot!==null?e.pivot.clone():null,this.matrix.copy(e.matrix),this.matrixWorld.copy(e.matrixWorld),this.matrixAutoUpdate=e.matrixAutoUpdate,this.matrixWorldAutoUpdate=e.matrixWorldAutoUpdate,this.matrixWorldNeedsUpdate=e.matrixWorldNeedsUpdate,this.layers.mask=e.layers.mask,this.visible=e.visible,this.castShadow=e.castShadow,this.receiveShadow=e.receiveShadow,this.frustumCulled=e.frustumCulled,this.renderOrder=e.renderOrder,this.static=e.static,this.animations=e.animations.slice(),this.userData=JSON.parse(JSON.stringify(e.userData)),t===!0)for(let i=0;i<e.children.length;i++){const r=e.children[i];this.add(r.clone())}return this}dispose(){this.dispatchEvent({type:"dispose"})}}nn.DEFAULT_UP=new N(0,1,0),nn.DEFAULT_MATRIX_AUTO_UPDATE=!0,nn.DEFAULT_MATRIX_WORLD_AUTO_UPDATE=!0;class wa extends nn{constructor(){super(),this.isGroup=!0,this.type="Group"}}const sg={type:"move"};class dc{constructor(){this._targetRay=null,this._grip=null,this._hand=null}getHandSpace(){return this._hand===null&&(this._hand=new wa,this._hand.matrixAutoUpdate=!1,this._hand.visible=!1,this._hand.joints={},this._hand.inputState={pinching:!1}),this._hand}getTargetRaySpace(){return this._targetRay===null&&(this._targetRay=new wa,this._targetRay.matrixAutoUpdate=!1,this._targetRay.visible=!1,this._targetRay.hasLinearVelocity=!1,this._targetRay.linearVelocity=new N,this._targetRay.hasAngularVelocity=!1,this._targetRay.angularVelocity=new N),this._targetRay}getGripSpace(){return this._grip===null&&(this._grip=new wa,this._grip.matrixAutoUpdate=!1,this._grip.visible=!1,this._grip.hasLinearVelocity=!1,this._grip.linearVelocity=new N,this._grip.hasAngularVelocity=!1,this._grip.angularVelocity=new N,this._grip.eventsEnabled=!1),this._grip}dispatchEvent(e){return this._targetRay!==null&&this._targetRay.dispatchEvent(e),this._grip!==null&&this._grip.dispatchEvent(e),this._hand!==null&&this._hand.dispatchEvent(e),this}connect(e){if(e&&e.hand){const t=this._hand;if(t)for(const i of e.hand.values())this._getHandJoint(t,i)}return this.dispatchEvent({type:"connected",data:e}),this}disconnect(e){return this.dispatchEvent({type:"disconnected",data:e}),this._targetRay!==null&&(this._targetRay.visible=!1),this._grip!==null&&(this._grip.visible=!1),this._hand!==null&&(this._hand.visible=!1),this}update(e,t,i){let r=null,s=null,a=null;const o=this._targetRay,l=this._grip,c=this._hand;if(e&&t.session.visibilityState!=="visible-blurred"){if(c&&e.hand){a=!0;for(const x of e.hand.values()){const m=t.getJointPose(x,i),p=this._getHandJoint(c,x);m!==null&&(p.matrix.fromArray(m.transform.matrix),p.matrix.decompose(p.position,p.quaternion,p.scale),p.matrixWorldNeedsUpdate=!0,p.jointRadius=m.radius),p.visible=m!==null}const f=c.joints["index-finger-tip"],d=c.joints["thumb-tip"],u=f.position.distanceTo(d.position),h=.02,g=.005;c.inputState.pinching&&u>h+g?(c.inputState.pinching=!1,this.dispatchEvent({type:"pinchend",handedness:e.handedness,target:this})):!c.inputState.pinching&&u<=h-g&&(c.inputState.pinching=!0,this.dispatchEvent({type:"pinchstart",handedness:e.handedness,target:this}))}else l!==null&&e.gripSpace&&(s=t.getPose(e.gripSpace,i),s!==null&&(l.matrix.fromArray(s.transform.matrix),l.matrix.decompose(l.position,l.quaternion,l.scale),l.matrixWorldNeedsUpdate=!0,s.linearVelocity?(l.hasLinearVelocity=!0,l.linearVelocity.copy(s.linearVelocity)):l.hasLinearVelocity=!1,s.angularVelocity?(l.hasAngularVelocity=!0,l.angularVelocity.copy(s.angularVelocity)):l.hasAngularVelocity=!1,l.eventsEnabled&&l.dispatchEvent({type:"gripUpdated",data:e,target:this})));o!==null&&(r=t.getPose(e.targetRaySpace,i),r===null&&s!==null&&(r=s),r!==null&&(o.matrix.fromArray(r.transform.matrix),o.matrix.decompose(o.position,o.quaternion,o.scale),o.matrixWorldNeedsUpdate=!0,r.linearVelocity?(o.hasLinearVelocity=!0,o.linearVelocity.copy(r.linearVelocity)):o.hasLinearVelocity=!1,r.angularVelocity?(o.hasAngularVelocity=!0,o.angularVelocity.copy(r.angularVelocity)):o.hasAngularVelocity=!1,this.dispatchEvent(sg)))}return o!==null&&(o.visible=r!==null),l!==null&&(l.visible=s!==null),c!==null&&(c.visible=a!==null),this}_getHandJoint(e,t){if(e.joints[t.jointName]===void 0){const i=new wa;i.matrixAutoUpdate=!1,i.visible=!1,e.joints[t.jointName]=i,e.add(i)}return e.joints[t.jointName]}}const td={aliceblue:15792383,antiquewhite:16444375,aqua:65535,aquamarine:8388564,azure:15794175,beige:16119260,bisque:16770244,black:0,blanchedalmond:16772045,blue:255,blueviolet:9055202,brown:10824234,burlywood:14596231,cadetblue:6266528,chartreuse:8388352,chocolate:13789470,coral:16744272,cornflowerblue:6591981,cornsilk:16775388,crimson:14423100,cyan:65535,darkblue:139,darkcyan:35723,darkgoldenrod:12092939,darkgray:11119017,darkgreen:25600,darkgrey:11119017,darkkhaki:12433259,darkmagenta:9109643,darkolivegreen:5597999,darkorange:16747520,darkorchid:10040012,darkred:9109504,darksalmon:15308410,darkseagreen:9419919,darkslateblue:4734347,darkslategray:3100495,darkslategrey:3100495,darkturquoise:52945,darkviolet:9699539,deeppink:16716947,deepskyblue:49151,dimgray:6908265,dimgrey:6908265,dodgerblue:2003199,firebrick:11674146,floralwhite:16775920,forestgreen:2263842,fuchsia:16711935,gainsboro:14474460,ghostwhite:16316671,gold:16766720,goldenrod:14329120,gray:8421504,green:32768,greenyellow:11403055,grey:8421504,honeydew:15794160,hotpink:16738740,indianred:13458524,indigo:4915330,ivory:16777200,khaki:15787660,lavender:15132410,lavenderblush:16773365,lawngreen:8190976,lemonchiffon:16775885,lightblue:11393254,lightcoral:15761536,lightcyan:14745599,lightgoldenrodyellow:16448210,lightgray:13882323,lightgreen:9498256,lightgrey:13882323,lightpink:16758465,lightsalmon:16752762,lightseagreen:2142890,lightskyblue:8900346,lightslategray:7833753,lightslategrey:7833753,lightsteelblue:11584734,lightyellow:16777184,lime:65280,limegreen:3329330,linen:16445670,magenta:16711935,maroon:8388608,mediumaquamarine:6737322,mediumblue:205,mediumorchid:12211667,mediumpurple:9662683,mediumseagreen:3978097,mediumslateblue:8087790,mediumspringgreen:64154,mediumturquoise:4772300,mediumvioletred:13047173,midnightblue:1644912,mintcream:16121850,mistyrose:16770273,moccasin:16770229,navajowhite:16768685,navy:128,oldlace:16643558,olive:8421376,olivedrab:7048739,orange:16753920,orangered:16729344,orchid:14315734,palegoldenrod:15657130,palegreen:10025880,paleturquoise:11529966,palevioletred:14381203,papayawhip:16773077,peachpuff:16767673,peru:13468991,pink:16761035,plum:14524637,powderblue:11591910,purple:8388736,rebeccapurple:6697881,red:16711680,rosybrown:12357519,royalblue:4286945,saddlebrown:9127187,salmon:16416882,sandybrown:16032864,seagreen:3050327,seashell:16774638,sienna:10506797,silver:12632256,skyblue:8900331,slateblue:6970061,slategray:7372944,slategrey:7372944,snow:16775930,springgreen:65407,steelblue:4620980,tan:13808780,teal:32896,thistle:14204888,tomato:16737095,turquoise:4251856,violet:15631086,wheat:16113331,white:16777215,whitesmoke:16119285,yellow:16776960,yellowgreen:10145074},Ri={h:0,s:0,l:0},Ra={h:0,s:0,l:0};function hc(n,e,t){return t<0&&(t+=1),t>1&&(t-=1),t<1/6?n+(e-n)*6*t:t<1/2?e:t<2/3?n+(e-n)*6*(2/3-t):n}class Ye{constructor(e,t,i){return this.isColor=!0,this.r=1,this.g=1,this.b=1,this.set(e,t,i)}set(e,t,i){if(t===void 0&&i===void 0){const r=e;r&&r.isColor?this.copy(r):typeof r=="number"?this.setHex(r):typeof r=="string"&&this.setStyle(r)}else this.setRGB(e,t,i);return this}setScalar(e){return this.r=e,this.g=e,this.b=e,this}setHex(e,t=pn){return e=Math.floor(e),this.r=(e>>16&255)/255,this.g=(e>>8&255)/255,this.b=(e&255)/255,Xe.colorSpaceToWorking(this,t),this}setRGB(e,t,i,r=Xe.workingColorSpace){return this.r=e,this.g=t,this.b=i,Xe.colorSpaceToWorking(this,r),this}setHSL(e,t,i,r=Xe.workingColorSpace){if(e=Vm(e,1),t=Oe(t,0,1),i=Oe(i,0,1),t===0)this.r=this.g=this.b=i;else{const s=i<=.5?i*(1+t):i+t-i*t,a=2*i-s;this.r=hc(a,s,e+1/3),this.g=hc(a,s,e),this.b=hc(a,s,e-1/3)}return Xe.colorSpaceToWorking(this,r),this}setStyle(e,t=pn){function i(s){s!==void 0&&parseFloat(s)<1&&Pe("Color: Alpha component of "+e+" will be ignored.")}let r;if(r=/^(\w+)\(([^\)]*)\)/.exec(e)){let s;const a=r[1],o=r[2];switch(a){case"rgb":case"rgba":if(s=/^\s*(\d+)\s*,\s*(\d+)\s*,\s*(\d+)\s*(?:,\s*(\d+(?:\.\d+)?|\.\d+)\s*)?$/.exec(o))return i(s[4]),this.setRGB(Math.min(255,parseInt(s[1],10))/255,Math.min(255,parseInt(s[2],10))/255,Math.min(255,parseInt(s[3],10))/255,t);if(s=/^\s*(\d+(?:\.\d+)?|\.\d+)\%\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*(?:,\s*(\d+(?:\.\d+)?|\.\d+)\s*)?$/.exec(o))return i(s[4]),this.setRGB(Math.min(100,parseFloat(s[1]))/100,Math.min(100,parseFloat(s[2]))/100,Math.min(100,parseFloat(s[3]))/100,t);break;case"hsl":case"hsla":if(s=/^\s*([+-]?(?:\d+(?:\.\d+)?|\.\d+))\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*(?:,\s*(\d+(?:\.\d+)?|\.\d+)\s*)?$/.exec(o))return i(s[4]),this.setHSL(parseFloat(s[1])/360,parseFloat(s[2])/100,parseFloat(s[3])/100,t);break;default:Pe("Color: Unknown color model "+e)}}else if(r=/^\#([A-Fa-f\d]+)$/.exec(e)){const s=r[1],a=s.length;if(a===3)return this.setRGB(parseInt(s.charAt(0),16)/15,parseInt(s.charAt(1),16)/15,parseInt(s.charAt(2),16)/15,t);if(a===6)return this.setHex(parseInt(s,16),t);Pe("Color: Invalid hex color "+e)}else if(e&&e.length>0)return this.setColorName(e,t);return this}setColorName(e,t=pn){const i=td[e.toLowerCase()];return i!==void 0?this.setHex(i,t):Pe("Color: Unknown color "+e),this}clone(){return new this.constructor(this.r,this.g,this.b)}copy(e){return this.r=e.r,this.g=e.g,this.b=e.b,this}copySRGBToLinear(e){return this.r=oi(e.r),this.g=oi(e.g),this.b=oi(e.b),this}copyLinearToSRGB(e){return this.r=Tr(e.r),this.g=Tr(e.g),this.b=Tr(e.b),this}convertSRGBToLinear(){return this.copySRGBToLinear(this),this}convertLinearToSRGB(){return this.copyLinearToSRGB(this),this}getHex(e=pn){return Xe.workingToColorSpace(Wt.copy(this),e),Math.round(Oe(Wt.r*255,0,255))*65536+Math.round(Oe(Wt.g*255,0,255))*256+Math.round(Oe(Wt.b*255,0,255))}getHexString(e=pn){return("000000"+this.getHex(e).toString(16)).slice(-6)}getHSL(e,t=Xe.workingColorSpace){Xe.workingToColorSpace(Wt.copy(this),t);const i=Wt.r,r=Wt.g,s=Wt.b,a=Math.max(i,r,s),o=Math.min(i,r,s);let l,c;const f=(o+a)/2;if(o===a)l=0,c=0;else{const d=a-o;switch(c=f<=.5?d/(a+o):d/(2-a-o),a){case i:l=(r-s)/d+(r<s?6:0);break;case r:l=(s-i)/d+2;break;case s:l=(i-r)/d+4;break}l/=6}return e.h=l,e.s=c,e.l=f,e}getRGB(e,t=Xe.workingColorSpace){return Xe.workingToColorSpace(Wt.copy(this),t),e.r=Wt.r,e.g=Wt.g,e.b=Wt.b,e}getStyle(e=pn){Xe.workingToColorSpace(Wt.copy(this),e);const t=Wt.r,i=Wt.g,r=Wt.b;return e!==pn?`color(${e} ${t.toFixed(3)} ${i.toFixed(3)} ${r.toFixed(3)})`:`rgb(${Math.round(t*255)},${Math.round(i*255)},${Math.round(r*255)})`}offsetHSL(e,t,i){return this.getHSL(Ri),this.setHSL(Ri.h+e,Ri.s+t,Ri.l+i)}add(e){return this.r+=e.r,this.g+=e.g,this.b+=e.b,this}addColors(e,t){return this.r=e.r+t.r,this.g=e.g+t.g,this.b=e.b+t.b,this}addScalar(e){return this.r+=e,this.g+=e,this.b+=e,this}sub(e){return this.r=Math.max(0,this.r-e.r),this.g=Math.max(0,this.g-e.g),this.b=Math.max(0,this.b-e.b),this}multiply(e){return this.r*=e.r,this.g*=e.g,this.b*=e.b,this}multiplyScalar(e){return this.r*=e,this.g*=e,this.b*=e,this}lerp(e,t){return this.r+=(e.r-this.r)*t,this.g+=(e.g-this.g)*t,this.b+=(e.b-this.b)*t,this}lerpColors(e,t,i){return this.r=e.r+(t.r-e.r)*i,this.g=e.g+(t.g-e.g)*i,this.b=e.b+(t.b-e.b)*i,this}lerpHSL(e,t){this.getHSL(Ri),e.getHSL(Ra);const i=rc(Ri.h,Ra.h,t),r=rc(Ri.s,Ra.s,t),s=rc(Ri.l,Ra.l,t);return this.setHSL(i,r,s),this}setFromVector3(e){return this.r=e.x,this.g=e.y,this.b=e.z,this}applyMatrix3(e){const t=this.r,i=this.g,r=this.b,s=e.elements;return this.r=s[0]*t+s[3]*i+s[6]*r,this.g=s[1]*t+s[4]*i+s[7]*r,this.b=s[2]*t+s[5]*i+s[8]*r,this}equals(e){return e.r===this.r&&e.g===this.g&&e.b===this.b}fromArray(e,t=0){return this.r=e[t],this.g=e[t+1],this.b=e[t+2],this}toArray(e=[],t=0){return e[t]=this.r,e[t+1]=this.g,e[t+2]=this.b,e}fromBufferAttribute(e,t){return this.r=e.getX(t),this.g=e.getY(t),this.b=e.getZ(t),this}toJSON(){return this.getHex()}*[Symbol.iterator](){yield this.r,yield this.g,yield this.b}}const Wt=new Ye;Ye.NAMES=td;class nd extends nn{constructor(){super(),this.isScene=!0,this.type="Scene",this.background=null,this.environment=null,this.fog=null,this.backgroundBlurriness=0,this.backgroundIntensity=1,this.backgroundRotation=new Qi,this.environmentIntensity=1,this.environmentRotation=new Qi,this.overrideMaterial=null,typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}copy(e,t){return super.copy(e,t),this.background=e.background!==null?e.background.clone():null,this.environment=e.environment!==null?e.environment.clone():null,this.fog=e.fog!==null?e.fog.clone():null,this.backgroundBlurriness=e.backgroundBlurriness,this.backgroundIntensity=e.backgroundIntensity,this.backgroundRotation.copy(e.backgroundRotation),this.environmentIntensity=e.environmentIntensity,this.environmentRotation.copy(e.environmentRotation),this.overrideMaterial=e.overrideMaterial!==null?e.overrideMaterial.clone():null,this.matrixAutoUpdate=e.matrixAutoUpdate,this}toJSON(e){const t=super.toJSON(e);return this.fog!==null&&(t.object.fog=this.fog.toJSON()),t.object.backgroundBlurriness=this.backgroundBlurriness,t.object.backgroundIntensity=this.backgroundIntensity,t.object.backgroundRotation=this.backgroundRotation.toArray(),t.object.environmentIntensity=this.environmentIntensity,t.object.environmentRotation=this.environmentRotation.toArray(),t}}const Pn=new N,ci=new N,pc=new N,ui=new N,Pr=new N,Lr=new N,id=new N,mc=new N,gc=new N,_c=new N,vc=new at,xc=new at,Sc=new at;class Bt{constructor(e=new N,t=new N,i=new N){this.a=e,this.b=t,this.c=i}static getNormal(e,t,i,r){r.subVectors(i,t),Pn.subVectors(e,t),r.cross(Pn);const s=r.lengthSq();return s>0?r.multiplyScalar(1/Math.sqrt(s)):r.set(0,0,0)}static getBarycoord(e,t,i,r,s){Pn.subVectors(r,t),ci.subVectors(i,t),pc.subVectors(e,t);const a=Pn.dot(Pn),o=Pn.dot(ci),l=Pn.dot(pc),c=ci.dot(ci),f=ci.dot(pc),d=a*c-o*o;if(d===0)return s.set(0,0,0),null;const u=1/d,h=(c*l-o*f)*u,g=(a*f-o*l)*u;return s.set(1-h-g,g,h)}static containsPoint(e,t,i,r){return this.getBarycoord(e,t,i,r,ui)===null?!1:ui.x>=0&&ui.y>=0&&ui.x+ui.y<=1}static getInterpolation(e,t,i,r,s,a,o,l){return this.getBarycoord(e,t,i,r,ui)===null?(l.x=0,l.y=0,"z"in l&&(l.z=0),"w"in l&&(l.w=0),null):(l.setScalar(0),l.addScaledVector(s,ui.x),l.addScaledVector(a,ui.y),l.addScaledVector(o,ui.z),l)}static getInterpolatedAttribute(e,t,i,r,s,a){return vc.setScalar(0),xc.setScalar(0),Sc.setScalar(0),vc.fromBufferAttribute(e,t),xc.fromBufferAttribute(e,i),Sc.fromBufferAttribute(e,r),a.setScalar(0),a.addScaledVector(vc,s.x),a.addScaledVector(xc,s.y),a.addScaledVector(Sc,s.z),a}static isFrontFacing(e,t,i,r){return Pn.subVectors(i,t),ci.subVectors(e,t),Pn.cross(ci).dot(r)<0}set(e,t,i){return this.a.copy(e),this.b.copy(t),this.c.copy(i),this}setFromPointsAndIndices(e,t,i,r){return this.a.copy(e[t]),this.b.copy(e[i]),this.c.copy(e[r]),this}setFromAttributeAndIndices(e,t,i,r){return this.a.fromBufferAttribute(e,t),this.b.fromBufferAttribute(e,i),this.c.fromBufferAttribute(e,r),this}clone(){return new this.constructor().copy(this)}copy(e){return this.a.copy(e.a),this.b.copy(e.b),this.c.copy(e.c),this}getArea(){return Pn.subVectors(this.c,this.b),ci.subVectors(this.a,this.b),Pn.cross(ci).length()*.5}getMidpoint(e){return e.addVectors(this.a,this.b).add(this.c).multiplyScalar(1/3)}getNormal(e){return Bt.getNormal(this.a,this.b,this.c,e)}getPlane(e){return e.setFromCoplanarPoints(this.a,this.b,this.c)}getBarycoord(e,t){return Bt.getBarycoord(e,this.a,this.b,this.c,t)}getInterpolation(e,t,i,r,s){return Bt.getInterpolation(e,this.a,this.b,this.c,t,i,r,s)}containsPoint(e){return Bt.containsPoint(e,this.a,this.b,this.c)}isFrontFacing(e){return Bt.isFrontFacing(this.a,this.b,this.c,e)}intersectsBox(e){return e.intersectsTriangle(this)}closestPointToPoint(e,t){const i=this.a,r=this.b,s=this.c;let a,o;Pr.subVectors(r,i),Lr.subVectors(s,i),mc.subVectors(e,i);const l=Pr.dot(mc),c=Lr.dot(mc);if(l<=0&&c<=0)return t.copy(i);gc.subVectors(e,r);const f=Pr.dot(gc),d=Lr.dot(gc);if(f>=0&&d<=f)return t.copy(r);const u=l*d-f*c;if(u<=0&&l>=0&&f<=0&&l-f>0)return a=l/(l-f),t.copy(i).addScaledVector(Pr,a);_c.subVectors(e,s);const h=Pr.dot(_c),g=Lr.dot(_c);if(g>=0&&h<=g)return t.copy(s);const x=h*c-l*g;if(x<=0&&c>=0&&g<=0)return o=c/(c-g),t.copy(i).addScaledVector(Lr,o);const m=f*g-h*d;if(m<=0&&d-f>=0&&h-g>=0)return id.subVectors(s,r),o=(d-f)/(d-f+(h-g)),t.copy(r).addScaledVector(id,o);const p=1/(m+x+u);return a=x*p,o=u*p,t.copy(i).addScaledVector(Pr,a).addScaledVector(Lr,o)}equals(e){return e.a.equals(this.a)&&e.b.equals(this.b)&&e.c.equals(this.c)}}class Jt{constructor(e=new N(1/0,1/0,1/0),t=new N(-1/0,-1/0,-1/0)){this.isBox3=!0,this.min=e,this.max=t}set(e,t){return this.min.copy(e),this.max.copy(t),this}setFromArray(e){this.makeEmpty();for(let t=0,i=e.length;t<i;t+=3)this.expandByPoint(Ln.fromArray(e,t));return this}setFromBufferAttribute(e){this.makeEmpty();for(let t=0,i=e.count;t<i;t++)this.expandByPoint(Ln.fromBufferAttribute(e,t));return this}setFromPoints(e){this.makeEmpty();for(let t=0,i=e.length;t<i;t++)this.expandByPoint(e[t]);return this}setFromCenterAndSize(e,t){const i=Ln.copy(t).multiplyScalar(.5);return this.min.copy(e).sub(i),this.max.copy(e).add(i),this}setFromObject(e,t=!1){return this.makeEmpty(),this.expandByObject(e,t)}clone(){return new this.constructor().copy(this)}copy(e){return this.min.copy(e.min),this.max.copy(e.max),this}makeEmpty(){return this.min.x=this.min.y=this.min.z=1/0,this.max.x=this.max.y=this.max.z=-1/0,this}isEmpty(){return this.max.x<this.min.x||this.max.y<this.min.y||this.max.z<this.min.z}getCenter(e){return this.isEmpty()?e.set(0,0,0):e.addVectors(this.min,this.max).multiplyScalar(.5)}getSize(e){return this.isEmpty()?e.set(0,0,0):e.subVectors(this.max,this.min)}expandByPoint(e){return this.min.min(e),this.max.max(e),this}expandByVector(e){return this.min.sub(e),this.max.add(e),this}expandByScalar(e){return this.min.addScalar(-e),this.max.addScalar(e),this}expandByObject(e,t=!1){e.updateWorldMatrix(!1,!1);const i=e.geometry;if(i!==void 0){const s=i.getAttribute("position");if(t===!0&&s!==void 0&&e.isInstancedMesh!==!0&&e.isBatchedMesh!==!0)for(let a=0,o=s.count;a<o;a++)e.isMesh===!0?e.getVertexPosition(a,Ln):Ln.fromBufferAttribute(s,a),Ln.applyMatrix4(e.matrixWorld),this.expandByPoint(Ln);else e.boundingBox!==void 0?(e.boundingBox===null&&e.computeBoundingBox(),Ca.copy(e.boundingBox)):(i.boundingBox===null&&i.computeBoundingBox(),Ca.copy(i.boundingBox)),Ca.applyMatrix4(e.matrixWorld),this.union(Ca)}const r=e.children;for(let s=0,a=r.length;s<a;s++)this.expandByObject(r[s],t);return this}containsPoint(e){return e.x>=this.min.x&&e.x<=this.max.x&&e.y>=this.min.y&&e.y<=this.max.y&&e.z>=this.min.z&&e.z<=this.max.z}containsBox(e){return this.min.x<=e.min.x&&e.max.x<=this.max.x&&this.min.y<=e.min.y&&e.max.y<=this.max.y&&this.min.z<=e.min.z&&e.max.z<=this.max.z}getParameter(e,t){return t.set((e.x-this.min.x)/(this.max.x-this.min.x),(e.y-this.min.y)/(this.max.y-this.min.y),(e.z-this.min.z)/(this.max.z-this.min.z))}intersectsBox(e){return e.max.x>=this.min.x&&e.min.x<=this.max.x&&e.max.y>=this.min.y&&e.min.y<=this.max.y&&e.max.z>=this.min.z&&e.min.z<=this.max.z}intersectsSphere(e){return this.clampPoint(e.center,Ln),Ln.distanceToSquared(e.center)<=e.radius*e.radius}intersectsPlane(e){let t,i;return e.normal.x>0?(t=e.normal.x*this.min.x,i=e.normal.x*this.max.x):(t=e.normal.x*this.max.x,i=e.normal.x*this.min.x),e.normal.y>0?(t+=e.normal.y*this.min.y,i+=e.normal.y*this.max.y):(t+=e.normal.y*this.max.y,i+=e.normal.y*this.min.y),e.normal.z>0?(t+=e.normal.z*this.min.z,i+=e.normal.z*this.max.z):(t+=e.normal.z*this.max.z,i+=e.normal.z*this.min.z),t<=-e.constant&&i>=-e.constant}intersectsTriangle(e){if(this.isEmpty())return!1;this.getCenter(Cs),Pa.subVectors(this.max,Cs),Dr.subVectors(e.a,Cs),Ir.subVectors(e.b,Cs),Nr.subVectors(e.c,Cs),Ci.subVectors(Ir,Dr),Pi.subVectors(Nr,Ir),ji.subVectors(Dr,Nr);let t=[0,-Ci.z,Ci.y,0,-Pi.z,Pi.y,0,-ji.z,ji.y,Ci.z,0,-Ci.x,Pi.z,0,-Pi.x,ji.z,0,-ji.x,-Ci.y,Ci.x,0,-Pi.y,Pi.x,0,-ji.y,ji.x,0];return!Mc(t,Dr,Ir,Nr,Pa)||(t=[1,0,0,0,1,0,0,0,1],!Mc(t,Dr,Ir,Nr,Pa))?!1:(La.crossVectors(Ci,Pi),t=[La.x,La.y,La.z],Mc(t,Dr,Ir,Nr,Pa))}clampPoint(e,t){return t.copy(e).clamp(this.min,this.max)}distanceToPoint(e){return this.clampPoint(e,Ln).distanceTo(e)}getBoundingSphere(e){return this.isEmpty()?e.makeEmpty():(this.getCenter(e.center),e.radius=this.getSize(Ln).length()*.5),e}intersect(e){return this.min.max(e.min),this.max.min(e.max),this.isEmpty()&&this.makeEmpty(),this}union(e){return this.min.min(e.min),this.max.max(e.max),this}applyMatrix4(e){return this.isEmpty()?this:(fi[0].set(this.min.x,this.min.y,this.min.z).applyMatrix4(e),fi[1].set(this.min.x,this.min.y,this.max.z).applyMatrix4(e),fi[2].set(this.min.x,this.max.y,this.min.z).applyMatrix4(e),fi[3].set(this.min.x,this.max.y,this.max.z).applyMatrix4(e),fi[4].set(this.max.x,this.min.y,this.min.z).applyMatrix4(e),fi[5].set(this.max.x,this.min.y,this.max.z).applyMatrix4(e),fi[6].set(this.max.x,this.max.y,this.min.z).applyMatrix4(e),fi[7].set(this.max.x,this.max.y,this.max.z).applyMatrix4(e),this.setFromPoints(fi),this)}translate(e){return this.min.add(e),this.max.add(e),this}equals(e){return e.min.equals(this.min)&&e.max.equals(this.max)}toJSON(){return{min:this.min.toArray(),max:this.max.toArray()}}fromJSON(e){return this.min.fromArray(e.min),this.max.fromArray(e.max),this}}const fi=[new N,new N,new N,new N,new N,new N,new N,new N],Ln=new N,Ca=new Jt,Dr=new N,Ir=new N,Nr=new N,Ci=new N,Pi=new N,ji=new N,Cs=new N,Pa=new N,La=new N,er=new N;function Mc(n,e,t,i,r){for(let s=0,a=n.length-3;s<=a;s+=3){er.fromArray(n,s);const o=r.x*Math.abs(er.x)+r.y*Math.abs(er.y)+r.z*Math.abs(er.z),l=e.dot(er),c=t.dot(er),f=i.dot(er);if(Math.max(-Math.max(l,c,f),Math.min(l,c,f))>o)return!1}return!0}const xt=new N,Da=new He;let ag=0;class kt extends Ji{constructor(e,t,i=!1){if(super(),Array.isArray(e))throw new TypeError("THREE.BufferAttribute: array should be a Typed Array.");this.isBufferAttribute=!0,Object.defineProperty(this,"id",{value:ag++}),this.name="",this.array=e,this.itemSize=t,this.count=e!==void 0?e.length/t:0,this.normalized=i,this.usage=Bm,this.updateRanges=[],this.gpuType=Bn,this.version=0,this._normalizationScale=e!==void 0?sc(e):void 0}onUploadCallback(){}set needsUpdate(e){e===!0&&this.version++}setUsage(e){return this.usage=e,this}addUpdateRange(e,t){this.updateRanges.push({start:e,count:t})}clearUpdateRanges(){this.updateRanges.length=0}copy(e){return this.name=e.name,this.array=new e.array.constructor(e.array),this.itemSize=e.itemSize,this.count=e.count,this.normalized=e.normalized,this.usage=e.usage,this.gpuType=e.gpuType,this._normalizationScale=e._normalizationScale,this}copyAt(e,t,i){e*=this.itemSize,i*=t.itemSize;for(let r=0,s=this.itemSize;r<s;r++)this.array[e+r]=t.array[i+r];return this}copyArray(e){return this.array.set(e),this}applyMatrix3(e){if(this.itemSize===2)for(let t=0,i=this.count;t<i;t++)Da.fromBufferAttribute(this,t),Da.applyMatrix3(e),this.setXY(t,Da.x,Da.y);else if(this.itemSize===3)for(let t=0,i=this.count;t<i;t++)xt.fromBufferAttribute(this,t),xt.applyMatrix3(e),this.setXYZ(t,xt.x,xt.y,xt.z);return this}applyMatrix4(e){for(let t=0,i=this.count;t<i;t++)xt.fromBufferAttribute(this,t),xt.applyMatrix4(e),this.setXYZ(t,xt.x,xt.y,xt.z);return this}applyNormalMatrix(e){for(let t=0,i=this.count;t<i;t++)xt.fromBufferAttribute(this,t),xt.applyNormalMatrix(e),this.setXYZ(t,xt.x,xt.y,xt.z);return this}transformDirection(e){for(let t=0,i=this.count;t<i;t++)xt.fromBufferAttribute(this,t),xt.transformDirection(e),this.setXYZ(t,xt.x,xt.y,xt.z);return this}set(e,t=0){return this.array.set(e,t),this}getComponent(e,t){let i=this.array[e*this.itemSize+t];return this.normalized&&(i=this._denormalize(i)),i}setComponent(e,t,i){return this.normalized&&(i=this._normalize(i)),this.array[e*this.itemSize+t]=i,this}getX(e){let t=this.array[e*this.itemSize];return this.normalized&&(t=this._denormalize(t)),t}setX(e,t){return this.normalized&&(t=this._normalize(t)),this.array[e*this.itemSize]=t,this}getY(e){let t=this.array[e*this.itemSize+1];return this.normalized&&(t=this._denormalize(t)),t}setY(e,t){return this.normalized&&(t=this._normalize(t)),this.array[e*this.itemSize+1]=t,this}getZ(e){let t=this.array[e*this.itemSize+2];return this.normalized&&(t=this._denormalize(t)),t}setZ(e,t){return this.normalized&&(t=this._normalize(t)),this.array[e*this.itemSize+2]=t,this}getW(e){let t=this.array[e*this.itemSize+3];return this.normalized&&(t=this._denormalize(t)),t}setW(e,t){return this.normalized&&(t=this._normalize(t)),this.array[e*this.itemSize+3]=t,this}setXY(e,t,i){return e*=this.itemSize,this.normalized&&(t=this._normalize(t),i=this._normalize(i)),this.array[e+0]=t,this.array[e+1]=i,this}setXYZ(e,t,i,r){return e*=this.itemSize,this.normalized&&(t=this._normalize(t),i=this._normalize(i),r=this._normalize(r)),this.array[e+0]=t,this.array[e+1]=i,this.array[e+2]=r,this}setXYZW(e,t,i,r,s){return e*=this.itemSize,this.normalized&&(t=this._normalize(t),i=this._normalize(i),r=this._normalize(r),s=this._normalize(s)),this.array[e+0]=t,this.array[e+1]=i,this.array[e+2]=r,this.array[e+3]=s,this}onUpload(e){return this.onUploadCallback=e,this}clone(){return new this.constructor(this.array,this.itemSize).copy(this)}toJSON(){const e={itemSize:this.itemSize,type:this.array.constructor.name,array:Array.from(this.array),normalized:this.normalized};return e.name=this.name,e.usage=this.usage,e.gpuType=this.gpuType,e}dispose(){this.dispatchEvent({type:"dispose"})}_denormalize(e){const t=this._normalizationScale;return t!==void 0?Math.max(e/t,-1):Xm(e,this.array)}_normalize(e){const t=this._normalizationScale;return t!==void 0?Math.round(e*t):$m(e,this.array)}}class rd extends kt{constructor(e,t,i){super(new Uint16Array(e),t,i)}}class sd extends kt{constructor(e,t,i){super(new Uint32Array(e),t,i)}}class Dn extends kt{constructor(e,t,i){super(new Float32Array(e),t,i)}}const og=new Jt,Ps=new N,yc=new N;class Ia{constructor(e=new N,t=-1){this.isSphere=!0,this.center=e,this.radius=t}set(e,t){return this.center.copy(e),this.radius=t,this}setFromPoints(e,t){const i=this.center;t!==void 0?i.copy(t):og.setFromPoints(e).getCenter(i);let r=0;for(let s=0,a=e.length;s<a;s++)r=Math.max(r,i.distanceToSquared(e[s]));return this.radius=Math.sqrt(r),this}copy(e){return this.center.copy(e.center),this.radius=e.radius,this}isEmpty(){return this.radius<0}makeEmpty(){return this.center.set(0,0,0),this.radius=-1,this}containsPoint(e){return e.distanceToSquared(this.center)<=this.radius*this.radius}distanceToPoint(e){return e.distanceTo(this.center)-this.radius}intersectsSphere(e){const t=this.radius+e.radius;return e.center.distanceToSquared(this.center)<=t*t}intersectsBox(e){return e.intersectsSphere(this)}intersectsPlane(e){return Math.abs(e.distanceToPoint(this.center))<=this.radius}clampPoint(e,t){const i=this.center.distanceToSquared(e);return t.copy(e),i>this.radius*this.radius&&(t.sub(this.center).normalize(),t.multiplyScalar(this.radius).add(this.center)),t}getBoundingBox(e){return this.isEmpty()?(e.makeEmpty(),e):(e.set(this.center,this.center),e.expandByScalar(this.radius),e)}applyMatrix4(e){return this.center.applyMatrix4(e),this.radius=this.radius*e.getMaxScaleOnAxis(),this}translate(e){return this.center.add(e),this}expandByPoint(e){if(this.isEmpty())return this.center.copy(e),this.radius=0,this;Ps.subVectors(e,this.center);const t=Ps.lengthSq();if(t>this.radius*this.radius){const i=Math.sqrt(t),r=(i-this.radius)*.5;this.center.addScaledVector(Ps,r/i),this.radius+=r}return this}union(e){return e.isEmpty()?this:this.isEmpty()?(this.copy(e),this):(this.center.equals(e.center)===!0?this.radius=Math.max(this.radius,e.radius):(yc.subVectors(e.center,this.center).setLength(e.radius),this.expandByPoint(Ps.copy(e.center).add(yc)),this.expandByPoint(Ps.copy(e.center).sub(yc))),this)}equals(e){return e.center.equals(this.center)&&e.radius===this.radius}clone(){return new this.constructor().copy(this)}toJSON(){return{radius:this.radius,center:this.center.toArray()}}fromJSON(e){return this.radius=e.radius,this.center.fromArray(e.center),this}}let lg=0;const mn=new je,bc=new nn,Ur=new N,ln=new Jt,Ls=new Jt,Lt=new N;class Hn extends Ji{constructor(){super(),this.isBufferGeometry=!0,Object.defineProperty(this,"id",{value:lg++}),this.uuid=ws(),this.name="",this.type="BufferGeometry",this.index=null,this.indirect=null,this.indirectOffset=0,this.attributes={},this.morphAttributes={},this.morphTargetsRelative=!1,this.groups=[],this.boundingBox=null,this.boundingSphere=null,this.drawRange={start:0,count:1/0},this.userData={},this._transformed=!1}getIndex(){return this.index}setIndex(e){return Array.isArray(e)?this.index=new(km(e)?sd:rd)(e,1):this.index=e,this}setIndirect(e,t=0){return this.indirect=e,this.indirectOffset=t,this}getIndirect(){return this.indirect}getAttribute(e){return this.attributes[e]}setAttribute(e,t){return this.attributes[e]=t,this}deleteAttribute(e){return delete this.attributes[e],this}hasAttribute(e){return this.attributes[e]!==void 0}addGroup(e,t,i=0){this.groups.push({start:e,count:t,materialIndex:i})}clearGroups(){this.groups=[]}setDrawRange(e,t){this.drawRange.start=e,this.drawRange.count=t}applyMatrix4(e){const t=this.attributes.position;t!==void 0&&(t.applyMatrix4(e),t.needsUpdate=!0);const i=this.attributes.normal;if(i!==void 0){const s=new Fe().getNormalMatrix(e);i.applyNormalMatrix(s),i.needsUpdate=!0}const r=this.attributes.tangent;return r!==void 0&&(r.transformDirection(e),r.needsUpdate=!0),this.boundingBox!==null&&this.computeBoundingBox(),this.boundingSphere!==null&&this.computeBoundingSphere(),this._transformed=!0,this}applyQuaternion(e){return mn.makeRotationFromQuaternion(e),this.applyMatrix4(mn),this}rotateX(e){return mn.makeRotationX(e),this.applyMatrix4(mn),this}rotateY(e){return mn.makeRotationY(e),this.applyMatrix4(mn),this}rotateZ(e){return mn.makeRotationZ(e),this.applyMatrix4(mn),this}translate(e,t,i){return mn.makeTranslation(e,t,i),this.applyMatrix4(mn),this}scale(e,t,i){return mn.makeScale(e,t,i),this.applyMatrix4(mn),this}lookAt(e){return bc.lookAt(e),bc.updateMatrix(),this.applyMatrix4(bc.matrix),this}center(){return this.computeBoundingBox(),this.boundingBox.getCenter(Ur).negate(),this.translate(Ur.x,Ur.y,Ur.z),this}setFromPoints(e){const t=this.getAttribute("position");if(t===void 0){const i=[];for(let r=0,s=e.length;r<s;r++){const a=e[r];i.push(a.x,a.y,a.z||0)}this.setAttribute("position",new Dn(i,3))}else{const i=Math.min(e.length,t.count);for(let r=0;r<i;r++){const s=e[r];t.setXYZ(r,s.x,s.y,s.z||0)}e.length>t.count&&Pe("BufferGeometry: Buffer size too small for points data. Use .dispose() and create a new geometry."),t.needsUpdate=!0}return this}computeBoundingBox(){this.boundingBox===null&&(this.boundingBox=new Jt);const e=this.attributes.position,t=this.morphAttributes.position;if(e&&e.isGLBufferAttribute){Ke("BufferGeometry.computeBoundingBox(): GLBufferAttribute requires a manual bounding box.",this),this.boundingBox.set(new N(-1/0,-1/0,-1/0),new N(1/0,1/0,1/0));return}if(e!==void 0){if(this.boundingBox.setFromBufferAttribute(e),t)for(let i=0,r=t.length;i<r;i++){const s=t[i];ln.setFromBufferAttribute(s),this.morphTargetsRelative?(Lt.addVectors(this.boundingBox.min,ln.min),this.boundingBox.expandByPoint(Lt),Lt.addVectors(this.boundingBox.max,ln.max),this.boundingBox.expandByPoint(Lt)):(this.boundingBox.expandByPoint(ln.min),this.boundingBox.expandByPoint(ln.max))}}else this.boundingBox.makeEmpty();(isNaN(this.boundingBox.min.x)||isNaN(this.boundingBox.min.y)||isNaN(this.boundingBox.min.z))&&Ke('BufferGeometry.computeBoundingBox(): Computed min/max have NaN values. The "position" attribute is likely to have NaN values.',this)}computeBoundingSphere(){this.boundingSphere===null&&(this.boundingSphere=new Ia);const e=this.attributes.position,t=this.morphAttributes.position;if(e&&e.isGLBufferAttribute){Ke("BufferGeometry.computeBoundingSphere(): GLBufferAttribute requires a manual bounding sphere.",this),this.boundingSphere.set(new N,1/0);return}if(e){const i=this.boundingSphere.center;if(ln.setFromBufferAttribute(e),t)for(let s=0,a=t.length;s<a;s++){const o=t[s];Ls.setFromBufferAttribute(o),this.morphTargetsRelative?(Lt.addVectors(ln.min,Ls.min),ln.expandByPoint(Lt),Lt.addVectors(ln.max,Ls.max),ln.expandByPoint(Lt)):(ln.expandByPoint(Ls.min),ln.expandByPoint(Ls.max))}ln.getCenter(i);let r=0;for(let s=0,a=e.count;s<a;s++)Lt.fromBufferAttribute(e,s),r=Math.max(r,i.distanceToSquared(Lt));if(t)for(let s=0,a=t.length;s<a;s++){const o=t[s],l=this.morphTargetsRelative;for(let c=0,f=o.count;c<f;c++)Lt.fromBufferAttribute(o,c),l&&(Ur.fromBufferAttribute(e,c),Lt.add(Ur)),r=Math.max(r,i.distanceToSquared(Lt))}this.boundingSphere.radius=Math.sqrt(r),isNaN(this.boundingSphere.radius)&&Ke('BufferGeometry.computeBoundingSphere(): Computed radius is NaN. The "position" attribute is likely to have NaN values.',this)}}computeTangents(){const e=this.index,t=this.attributes;if(e===null||t.position===void 0||t.normal===void 0||t.uv===void 0){Ke("BufferGeometry: .computeTangents() failed. Missing required attributes (index, position, normal or uv)");return}const i=t.position,r=t.normal,s=t.uv;let a=this.getAttribute("tangent");(a===void 0||a.count!==i.count)&&(a=new kt(new Float32Array(4*i.count),4),this.setAttribute("tangent",a));const o=[],l=[],c=new Uint8Array(i.count);for(let I=0;I<i.count;I++)o[I]=new N,l[I]=new N;const f=new N,d=new N,u=new N,h=new He,g=new He,x=new He,m=new N,p=new N;function v(I,R,P){c[I]=c[R]=c[P]=1,f.fromBufferAttribute(i,I),d.fromBufferAttribute(i,R),u.fromBufferAttribute(i,P),h.fromBufferAttribute(s,I),g.fromBufferAttribute(s,R),x.fromBufferAttribute(s,P),d.sub(f),u.sub(f),g.sub(h),x.sub(h);const D=1/(g.x*x.y-x.x*g.y);isFinite(D)&&(m.copy(d).multiplyScalar(x.y).addScaledVector(u,-g.y).multiplyScalar(D),p.copy(u).multiplyScalar(g.x).addScaledVector(d,-x.x).multiplyScalar(D),o[I].add(m),o[R].add(m),o[P].add(m),l[I].add(p),l[R].add(p),l[P].add(p))}let M=this.groups;M.length===0&&(M=[{start:0,count:e.count}]);for(let I=0,R=M.length;I<R;++I){const P=M[I],D=P.start,O=P.count;for(let L=D,k=D+O;L<k;L+=3)v(e.getX(L+0),e.getX(L+1),e.getX(L+2))}const S=new N,b=new N,w=new N,_=new N;function y(I){w.fromBufferAttribute(r,I),_.copy(w);const R=o[I];S.copy(R),S.sub(w.multiplyScalar(w.dot(R))).normalize(),b.crossVectors(_,R);const D=b.dot(l[I])<0?-1:1;a.setXYZW(I,S.x,S.y,S.z,D)}for(let I=0,R=i.count;I<R;++I)c[I]&&y(I);this._transformed=!0}computeVertexNormals(){const e=this.index,t=this.getAttribute("position");if(t!==void 0){let i=this.getAttribute("normal");if(i===void 0||i.count!==t.count)i=new kt(new Float32Array(t.count*3),3),this.setAttribute("normal",i);else for(let u=0,h=i.count;u<h;u++)i.setXYZ(u,0,0,0);const r=new N,s=new N,a=new N,o=new N,l=new N,c=new N,f=new N,d=new N;if(e)for(let u=0,h=e.count;u<h;u+=3){const g=e.getX(u+0),x=e.getX(u+1),m=e.getX(u+2);r.fromBufferAttribute(t,g),s.fromBufferAttribute(t,x),a.fromBufferAttribute(t,m),f.subVectors(a,s),d.subVectors(r,s),f.cross(d),o.fromBufferAttribute(i,g),l.fromBufferAttribute(i,x),c.fromBufferAttribute(i,m),o.add(f),l.add(f),c.add(f),i.setXYZ(g,o.x,o.y,o.z),i.setXYZ(x,l.x,l.y,l.z),i.setXYZ(m,c.x,c.y,c.z)}else for(let u=0,h=t.count;u<h;u+=3)r.fromBufferAttribute(t,u+0),s.fromBufferAttribute(t,u+1),a.fromBufferAttribute(t,u+2),f.subVectors(a,s),d.subVectors(r,s),f.cross(d),i.setXYZ(u+0,f.x,f.y,f.z),i.setXYZ(u+1,f.x,f.y,f.z),i.setXYZ(u+2,f.x,f.y,f.z);this.normalizeNormals(),i.needsUpdate=!0}}normalizeNormals(){const e=this.attributes.normal;for(let t=0,i=e.count;t<i;t++)Lt.fromBufferAttribute(e,t),Lt.normalize(),e.setXYZ(t,Lt.x,Lt.y,Lt.z)}toNonIndexed(){function e(o,l){const c=o.array,f=o.itemSize,d=o.normalized,u=new c.constructor(l.length*f);let h=0,g=0;for(let x=0,m=l.length;x<m;x++){o.isInterleavedBufferAttribute?h=l[x]*o.data.stride+o.offset:h=l[x]*f;for(let p=0;p<f;p++)u[g++]=c[h++]}return new kt(u,f,d)}if(this.index===null)return Pe("BufferGeometry.toNonIndexed(): BufferGeometry is already non-indexed."),this;const t=new Hn,i=this.index.array,r=this.attributes;for(const o in r){const l=r[o],c=e(l,i);t.setAttribute(o,c)}const s=this.morphAttributes;for(const o in s){const l=[],c=s[o];for(let f=0,d=c.length;f<d;f++){const u=c[f],h=e(u,i);l.push(h)}t.morphAttributes[o]=l}t.morphTargetsRelative=this.morphTargetsRelative;const a=this.groups;for(let o=0,l=a.length;o<l;o++){const c=a[o];t.addGroup(c.start,c.count,c.materialIndex)}return t}toJSON(){const e={metadata:{version:4.7,type:"BufferGeometry",generator:"BufferGeometry.toJSON"}};if(e.uuid=this.uuid,e.type=this.parameters!==void 0&&this._transformed===!0?"BufferGeometry":this.type,e.name=this.name,Object.keys(this.userData).length>0&&(e.userData=this.userData),this.parameters!==void 0&&this._transformed!==!0){const l=this.parameters;for(const c in l)l[c]!==void 0&&(e[c]=l[c]);return e}e.data={attributes:{}};const t=this.index;t!==null&&(e.data.index={type:t.array.constructor.name,array:Array.prototype.slice.call(t.array)});const i=this.attributes;for(const l in i){const c=i[l];e.data.attributes[l]=c.toJSON(e.data)}const r={};let s=!1;for(const l in this.morphAttributes){const c=this.morphAttributes[l],f=[];for(let d=0,u=c.length;d<u;d++){const h=c[d];f.push(h.toJSON(e.data))}f.length>0&&(r[l]=f,s=!0)}s&&(e.data.morphAttributes=r,e.data.morphTargetsRelative=this.morphTargetsRelative);const a=this.groups;a.length>0&&(e.data.groups=JSON.parse(JSON.stringify(a)));const o=this.boundingSphere;return o!==null&&(e.data.boundingSphere=o.toJSON()),e}clone(){return new this.constructor().copy(this)}copy(e){this.index=null,this.attributes={},this.morphAttributes={},this.groups=[],this.boundingBox=null,this.boundingSphere=null;const t={};this.name=e.name;const i=e.index;i!==null&&this.setIndex(i.clone());const r=e.attributes;for(const c in r){const f=r[c];this.setAttribute(c,f.clone(t))}const s=e.morphAttributes;for(const c in s){const f=[],d=s[c];for(let u=0,h=d.length;u<h;u++)f.push(d[u].clone(t));this.morphAttributes[c]=f}this.morphTargetsRelative=e.morphTargetsRelative;const a=e.groups;for(let c=0,f=a.length;c<f;c++){const d=a[c];this.addGroup(d.start,d.count,d.materialIndex)}const o=e.boundingBox;o!==null&&(this.boundingBox=o.clone());const l=e.boundingSphere;return l!==null&&(this.boundingSphere=l.clone()),this.drawRange.start=e.drawRange.start,this.drawRange.count=e.drawRange.count,this.userData=e.userData,this._transformed=e._transformed,this}dispose(){this.dispatchEvent({type:"dispose"})}}const Ec=new N,cg=new N,ug=new Fe;class Gn{constructor(e=new N(1,0,0),t=0){this.isPlane=!0,this.normal=e,this.constant=t}set(e,t){return this.normal.copy(e),this.constant=t,this}setComponents(e,t,i,r){return this.normal.set(e,t,i),this.constant=r,this}setFromNormalAndCoplanarPoint(e,t){return this.normal.copy(e),this.constant=-t.dot(this.normal),this}setFromCoplanarPoints(e,t,i){const r=Ec.subVectors(i,t).cross(cg.subVectors(e,t)).normalize();return this.setFromNormalAndCoplanarPoint(r,e),this}copy(e){return this.normal.copy(e.normal),this.constant=e.constant,this}normalize(){const e=1/this.normal.length();return this.normal.multiplyScalar(e),this.constant*=e,this}negate(){return this.constant*=-1,this.normal.negate(),this}distanceToPoint(e){return this.normal.dot(e)+this.constant}distanceToSphere(e){return this.distanceToPoint(e.center)-e.radius}projectPoint(e,t){return t.copy(e).addScaledVector(this.normal,-this.distanceToPoint(e))}intersectLine(e,t,i=!0){const r=e.delta(Ec),s=this.normal.dot(r);if(s===0)return this.distanceToPoint(e.start)===0?t.copy(e.start):null;const a=-(e.start.dot(this.normal)+this.constant)/s;return i===!0&&(a<0||a>1)?null:t.copy(e.start).addScaledVector(r,a)}intersectsLine(e){const t=this.distanceToPoint(e.start),i=this.distanceToPoint(e.end);return t<0&&i>0||i<0&&t>0}intersectsBox(e){return e.intersectsPlane(this)}intersectsSphere(e){return e.intersectsPlane(this)}coplanarPoint(e){return e.copy(this.normal).multiplyScalar(-this.constant)}applyMatrix4(e,t){const i=t||ug.getNormalMatrix(e),r=this.coplanarPoint(Ec).applyMatrix4(e),s=this.normal.applyMatrix3(i).normalize();return this.constant=-r.dot(s),this}translate(e){return this.constant-=e.dot(this.normal),this}equals(e){return e.normal.equals(this.normal)&&e.constant===this.constant}clone(){return new this.constructor().copy(this)}toJSON(){return{normal:this.normal.toArray(),constant:this.constant}}fromJSON(e){return this.normal.fromArray(e.normal),this.constant=e.constant,this}}let fg=0;class Ds extends Ji{constructor(){super(),this.isMaterial=!0,Object.defineProperty(this,"id",{value:fg++}),this.uuid=ws(),this.name="",this.type="Material",this.blending=bs,this.side=ri,this.vertexColors=!1,this.opacity=1,this.transparent=!1,this.alphaHash=!1,this.blendSrc=vf,this.blendDst=xf,this.blendEquation=yr,this.blendSrcAlpha=null,this.blendDstAlpha=null,this.blendEquationAlpha=null,this.blendColor=new Ye(0,0,0),this.blendAlpha=0,this.depthFunc=Es,this.depthTest=!0,this.depthWrite=!0,this.stencilWriteMask=255,this.stencilFunc=Dm,this.stencilRef=0,this.stencilFuncMask=255,this.stencilFail=ec,this.stencilZFail=ec,this.stencilZPass=ec,this.stencilWrite=!1,this.clippingPlanes=null,this.clipIntersection=!1,this.clipShadows=!1,this.shadowSide=null,this.colorWrite=!0,this.precision=null,this.polygonOffset=!1,this.polygonOffsetFactor=0,this.polygonOffsetUnits=0,this.dithering=!1,this.alphaToCoverage=!1,this.premultipliedAlpha=!1,this.forceSinglePass=!1,this.allowOverride=!0,this.visible=!0,this.toneMapped=!0,this.userData={},this.version=0,this._alphaTest=0}get alphaTest(){return this._alphaTest}set alphaTest(e){this._alphaTest>0!=e>0&&this.version++,this._alphaTest=e}onBeforeRender(){}onBeforeCompile(){}customProgramCacheKey(){return this.onBeforeCompile.toString()}setValues(e){if(e!==void 0)for(const t in e){const i=e[t];if(i===void 0){Pe(`Material: parameter '${t}' has value of undefined.`);continue}const r=this[t];if(r===void 0){Pe(`Material: '${t}' is not a property of THREE.${this.type}.`);continue}r&&r.isColor?r.set(i):r&&r.isVector2&&i&&i.isVector2||r&&r.isEuler&&i&&i.isEuler||r&&r.isVector3&&i&&i.isVector3?r.copy(i):this[t]=i}}toJSON(e){const t=e===void 0||typeof e=="string";t&&(e={textures:{},images:{}});const i={metadata:{version:4.7,type:"Material",generator:"Material.toJSON"}};i.uuid=this.uuid,i.type=this.type,i.blending=this.blending,i.side=this.side,i.shadowSide=this.shadowSide,i.vertexColors=this.vertexColors,i.opacity=this.opacity,i.transparent=this.transparent,i.blendSrc=this.blendSrc,i.blendDst=this.blendDst,i.blendEquation=this.blendEquation,i.blendSrcAlpha=this.blendSrcAlpha,i.blendDstAlpha=this.blendDstAlpha,i.blendEquationAlpha=this.blendEquationAlpha,i.blendColor=this.blendColor.getHex(),i.blendAlpha=this.blendAlpha,i.depthFunc=this.depthFunc,i.depthTest=this.depthTest,i.depthWrite=this.depthWrite,i.colorWrite=this.colorWrite,i.clipIntersection=this.clipIntersection,i.clipShadows=this.clipShadows,i.stencilWriteMask=this.stencilWriteMask,i.stencilFunc=this.stencilFunc,i.stencilRef=this.stencilRef,i.stencilFuncMask=this.stencilFuncMask,i.stencilFail=this.stencilFail,i.stencilZFail=this.stencilZFail,i.stencilZPass=this.stencilZPass,i.stencilWrite=this.stencilWrite,i.polygonOffset=this.polygonOffset,i.polygonOffsetFactor=this.polygonOffsetFactor,i.polygonOffsetUnits=this.polygonOffsetUnits,i.dithering=this.dithering,i.alphaTest=this.alphaTest,i.alphaHash=this.alphaHash,i.alphaToCoverage=this.alphaToCoverage,i.premultipliedAlpha=this.premultipliedAlpha,i.forceSinglePass=this.forceSinglePass,i.allowOverride=this.allowOverride,i.visible=this.visible,i.toneMapped=this.toneMapped,i.name=this.name,this.color&&this.color.isColor&&(i.color=this.color.getHex()),this.roughness!==void 0&&(i.roughness=this.roughness),this.metalness!==void 0&&(i.metalness=this.metalness),this.sheen!==void 0&&(i.sheen=this.sheen),this.sheenColor&&this.sheenColor.isColor&&(i.sheenColor=this.sheenColor.getHex()),this.sheenRoughness!==void 0&&(i.sheenRoughness=this.sheenRoughness),this.emissive&&this.emissive.isColor&&(i.emissive=this.emissive.getHex()),this.emissiveIntensity!==void 0&&(i.emissiveIntensity=this.emissiveIntensity),this.specular&&this.specular.isColor&&(i.specular=this.specular.getHex()),this.specularIntensity!==void 0&&(i.specularIntensity=this.specularIntensity),this.specularColor&&this.specularColor.isColor&&(i.specularColor=this.specularColor.getHex()),this.shininess!==void 0&&(i.shininess=this.shininess),this.clearcoat!==void 0&&(i.clearcoat=this.clearcoat),this.clearcoatRoughness!==void 0&&(i.clearcoatRoughness=this.clearcoatRoughness),this.diffuseRoughness!==void 0&&(i.diffuseRoughness=this.diffuseRoughness),this.diffuseRoughnessMap&&this.diffuseRoughnessMap.isTexture&&(i.diffuseRoughnessMap=this.diffuseRoughnessMap.toJSON(e).uuid),this.clearcoatMap&&this.clearcoatMap.isTexture&&(i.clearcoatMap=this.clearcoatMap.toJSON(e).uuid),this.clearcoatRoughnessMap&&this.clearcoatRoughnessMap.isTexture&&(i.clearcoatRoughnessMap=this.clearcoatRoughnessMap.toJSON(e).uuid),this.clearcoatNormalMap&&this.clearcoatNormalMap.isTexture&&(i.clearcoatNormalMap=this.clearcoatNormalMap.toJSON(e).uuid,i.clearcoatNormalScale=this.clearcoatNormalScale.toArray()),this.sheenColorMap&&this.sheenColorMap.isTexture&&(i.sheenColorMap=this.sheenColorMap.toJSON(e).uuid),this.sheenRoughnessMap&&this.sheenRoughnessMap.isTexture&&(i.sheenRoughnessMap=this.sheenRoughnessMap.toJSON(e).uuid),this.dispersion!==void 0&&(i.dispersion=this.dispersion),this.retroreflectivity!==void 0&&(i.retroreflectivity=this.retroreflectivity),this.iridescence!==void 0&&(i.iridescence=this.iridescence),this.iridescenceIOR!==void 0&&(i.iridescenceIOR=this.iridescenceIOR),this.iridescenceThicknessMinimum!==void 0&&(i.iridescenceThicknessMinimum=this.iridescenceThicknessMinimum),this.iridescenceThicknessMaximum!==void 0&&(i.iridescenceThicknessMaximum=this.iridescenceThicknessMaximum),this.iridescenceMap&&this.iridescenceMap.isTexture&&(i.iridescenceMap=this.iridescenceMap.toJSON(e).uuid),this.iridescenceThicknessMap&&this.iridescenceThicknessMap.isTexture&&(i.iridescenceThicknessMap=this.iridescenceThicknessMap.toJSON(e).uuid),this.anisotropy!==void 0&&(i.anisotropy=this.anisotropy),this.anisotropyRotation!==void 0&&(i.anisotropyRotation=this.anisotropyRotation),this.anisotropyMap&&this.anisotropyMap.isTexture&&(i.anisotropyMap=this.anisotropyMap.toJSON(e).uuid),this.map&&this.map.isTexture&&(i.map=this.map.toJSON(e).uuid),this.matcap&&this.matcap.isTexture&&(i.matcap=this.matcap.toJSON(e).uuid),this.alphaMap&&this.alphaMap.isTexture&&(i.alphaMap=this.alphaMap.toJSON(e).uuid),this.lightMap&&this.lightMap.isTexture&&(i.lightMap=this.lightMap.toJSON(e).uuid,i.lightMapIntensity=this.lightMapIntensity),this.aoMap&&this.aoMap.isTexture&&(i.aoMap=this.aoMap.toJSON(e).uuid,i.aoMapIntensity=this.aoMapIntensity),this.bumpMap&&this.bumpMap.isTexture&&(i.bumpMap=this.bumpMap.toJSON(e).uuid,i.bumpScale=this.bumpScale),this.normalMap&&this.normalMap.isTexture&&(i.normalMap=this.normalMap.toJSON(e).uuid,i.normalMapType=this.normalMapType,i.normalScale=this.normalScale.toArray()),this.displacementMap&&this.displacementMap.isTexture&&(i.displacementMap=this.displacementMap.toJSON(e).uuid,i.displacementScale=this.displacementScale,i.displacementBias=this.displacementBias),this.roughnessMap&&this.roughnessMap.isTexture&&(i.roughnessMap=this.roughnessMap.toJSON(e).uuid),this.metalnessMap&&this.metalnessMap.isTexture&&(i.metalnessMap=this.metalnessMap.toJSON(e).uuid),this.emissiveMap&&this.emissiveMap.isTexture&&(i.emissiveMap=this.emissiveMap.toJSON(e).uuid),this.specularMap&&this.specularMap.isTexture&&(i.specularMap=this.specularMap.toJSON(e).uuid),this.specularIntensityMap&&this.specularIntensityMap.isTexture&&(i.specularIntensityMap=this.specularIntensityMap.toJSON(e).uuid),this.specularColorMap&&this.specularColorMap.isTexture&&(i.specularColorMap=this.specularColorMap.toJSON(e).uuid),this.envMap&&this.envMap.isTexture&&(i.envMap=this.envMap.toJSON(e).uuid,this.combine!==void 0&&(i.combine=this.combine)),this.envMapRotation!==void 0&&(i.envMapRotation=this.envMapRotation.toArray()),this.envMapIntensity!==void 0&&(i.envMapIntensity=this.envMapIntensity),this.reflectivity!==void 0&&(i.reflectivity=this.reflectivity),this.refractionRatio!==void 0&&(i.refractionRatio=this.refractionRatio),this.gradientMap&&this.gradientMap.isTexture&&(i.gradientMap=this.gradientMap.toJSON(e).uuid),this.transmission!==void 0&&(i.transmission=this.transmission),this.transmissionMap&&this.transmissionMap.isTexture&&(i.transmissionMap=this.transmissionMap.toJSON(e).uuid),this.thickness!==void 0&&(i.thickness=this.thickness),this.thicknessMap&&this.thicknessMap.isTexture&&(i.thicknessMap=this.thicknessMap.toJSON(e).uuid),this.attenuationDistance!==void 0&&(i.attenuationDistance=this.attenuationDistance),this.attenuationColor!==void 0&&(i.attenuationColor=this.attenuationColor.getHex()),this.size!==void 0&&(i.size=this.size),this.sizeAttenuation!==void 0&&(i.sizeAttenuation=this.sizeAttenuation),Array.isArray(this.clippingPlanes)&&this.clippingPlanes.length>0&&(i.clippingPlanes=this.clippingPlanes.map(s=>s.toJSON())),this.rotation!==void 0&&(i.rotation=this.rotation),this.depthPacking!==void 0&&(i.depthPacking=this.depthPacking),this.linewidth!==void 0&&(i.linewidth=this.linewidth),this.linecap!==void 0&&(i.linecap=this.linecap),this.linejoin!==void 0&&(i.linejoin=this.linejoin),this.dashSize!==void 0&&(i.dashSize=this.dashSize),this.gapSize!==void 0&&(i.gapSize=this.gapSize),this.scale!==void 0&&(i.scale=this.scale),this.wireframe!==void 0&&(i.wireframe=this.wireframe),this.wireframeLinewidth!==void 0&&(i.wireframeLinewidth=this.wireframeLinewidth),this.wireframeLinecap!==void 0&&(i.wireframeLinecap=this.wireframeLinecap),this.wireframeLinejoin!==void 0&&(i.wireframeLinejoin=this.wireframeLinejoin),this.flatShading!==void 0&&(i.flatShading=this.flatShading),this.fog!==void 0&&(i.fog=this.fog),Object.keys(this.userData).length>0&&(i.userData=this.userData);function r(s){const a=[];for(const o in s){const l=s[o];delete l.metadata,a.push(l)}return a}if(t){const s=r(e.textures),a=r(e.images);s.length>0&&(i.textures=s),a.length>0&&(i.images=a)}return i}fromJSON(e,t){if(e.uuid!==void 0&&(this.uuid=e.uuid),e.name!==void 0&&(this.name=e.name),e.color!==void 0&&this.color!==void 0&&this.color.setHex(e.color),e.roughness!==void 0&&(this.roughness=e.roughness),e.metalness!==void 0&&(this.metalness=e.metalness),e.sheen!==void 0&&(this.sheen=e.sheen),e.sheenColor!==void 0&&(this.sheenColor=new Ye().setHex(e.sheenColor)),e.sheenRoughness!==void 0&&(this.sheenRoughness=e.sheenRoughness),e.emissive!==void 0&&this.emissive!==void 0&&this.emissive.setHex(e.emissive),e.specular!==void 0&&this.specular!==void 0&&this.specular.setHex(e.specular),e.specularIntensity!==void 0&&(this.specularIntensity=e.specularIntensity),e.specularColor!==void 0&&this.specularColor!==void 0&&this.specularColor.setHex(e.specularColor),e.shininess!==void 0&&(this.shininess=e.shininess),e.clearcoat!==void 0&&(this.clearcoat=e.clearcoat),e.clearcoatRoughness!==void 0&&(this.clearcoatRoughness=e.clearcoatRoughness),e.diffuseRoughness!==void 0&&(this.diffuseRoughness=e.diffuseRoughness),e.dispersion!==void 0&&(this.dispersion=e.dispersion),e.retroreflectivity!==void 0&&(this.retroreflectivity=e.retroreflectivity),e.iridescence!==void 0&&(this.iridescence=e.iridescence),e.iridescenceIOR!==void 0&&(this.iridescenceIOR=e.iridescenceIOR),e.iridescenceThicknessMinimum!==void 0&&(this.iridescenceThicknessMinimum=e.iridescenceThicknessMinimum),e.iridescenceThicknessMaximum!==void 0&&(this.iridescenceThicknessMaximum=e.iridescenceThicknessMaximum),e.iridescenceThicknessRange!==void 0&&(this.iridescenceThicknessMinimum=e.iridescenceThicknessRange[0],this.iridescenceThicknessMaximum=e.iridescenceThicknessRange[1]),e.transmission!==void 0&&(this.transmission=e.transmission),e.thickness!==void 0&&(this.thickness=e.thickness),e.attenuationDistance!==void 0&&(this.attenuationDistance=e.attenuationDistance),e.attenuationColor!==void 0&&this.attenuationColor!==void 0&&this.attenuationColor.setHex(e.attenuationColor),e.anisotropy!==void 0&&(this.anisotropy=e.anisotropy),e.anisotropyRotation!==void 0&&(this.anisotropyRotation=e.anisotropyRotation),e.fog!==void 0&&(this.fog=e.fog),e.flatShading!==void 0&&(this.flatShading=e.flatShading),e.blending!==void 0&&(this.blending=e.blending),e.combine!==void 0&&(this.combine=e.combine),e.side!==void 0&&(this.side=e.side),e.shadowSide!==void 0&&(this.shadowSide=e.shadowSide),e.opacity!==void 0&&(this.opacity=e.opacity),e.transparent!==void 0&&(this.transparent=e.transparent),e.alphaTest!==void 0&&(this.alphaTest=e.alphaTest),e.alphaHash!==void 0&&(this.alphaHash=e.alphaHash),e.depthFunc!==void 0&&(this.depthFunc=e.depthFunc),e.depthTest!==void 0&&(this.depthTest=e.depthTest),e.depthWrite!==void 0&&(this.depthWrite=e.depthWrite),e.colorWrite!==void 0&&(this.colorWrite=e.colorWrite),e.clippingPlanes!==void 0&&(this.clippingPlanes=e.clippingPlanes.map(i=>new Gn().fromJSON(i))),e.clipIntersection!==void 0&&(this.clipIntersection=e.clipIntersection),e.clipShadows!==void 0&&(this.clipShadows=e.clipShadows),e.depthPacking!==void 0&&(this.depthPacking=e.depthPacking),e.blendSrc!==void 0&&(this.blendSrc=e.blendSrc),e.blendDst!==void 0&&(this.blendDst=e.blendDst),e.blendEquation!==void 0&&(this.blendEquation=e.blendEquation),e.blendSrcAlpha!==void 0&&(this.blendSrcAlpha=e.blendSrcAlpha),e.blendDstAlpha!==void 0&&(this.blendDstAlpha=e.blendDstAlpha),e.blendEquationAlpha!==void 0&&(this.blendEquationAlpha=e.blendEquationAlpha),e.blendColor!==void 0&&this.blendColor!==void 0&&this.blendColor.setHex(e.blendColor),e.blendAlpha!==void 0&&(this.blendAlpha=e.blendAlpha),e.stencilWriteMask!==void 0&&(this.stencilWriteMask=e.stencilWriteMask),e.stencilFunc!==void 0&&(this.stencilFunc=e.stencilFunc),e.stencilRef!==void 0&&(this.stencilRef=e.stencilRef),e.stencilFuncMask!==void 0&&(this.stencilFuncMask=e.stencilFuncMask),e.stencilFail!==void 0&&(this.stencilFail=e.stencilFail),e.stencilZFail!==void 0&&(this.stencilZFail=e.stencilZFail),e.stencilZPass!==void 0&&(this.stencilZPass=e.stencilZPass),e.stencilWrite!==void 0&&(this.stencilWrite=e.stencilWrite),e.wireframe!==void 0&&(this.wireframe=e.wireframe),e.wireframeLinewidth!==void 0&&(this.wireframeLinewidth=e.wireframeLinewidth),e.wireframeLinecap!==void 0&&(this.wireframeLinecap=e.wireframeLinecap),e.wireframeLinejoin!==void 0&&(this.wireframeLinejoin=e.wireframeLinejoin),e.rotation!==void 0&&(this.rotation=e.rotation),e.linewidth!==void 0&&(this.linewidth=e.linewidth),e.linecap!==void 0&&(this.linecap=e.linecap),e.linejoin!==void 0&&(this.linejoin=e.linejoin),e.dashSize!==void 0&&(this.dashSize=e.dashSize),e.gapSize!==void 0&&(this.gapSize=e.gapSize),e.scale!==void 0&&(this.scale=e.scale),e.polygonOffset!==void 0&&(this.polygonOffset=e.polygonOffset),e.polygonOffsetFactor!==void 0&&(this.polygonOffsetFactor=e.polygonOffsetFactor),e.polygonOffsetUnits!==void 0&&(this.polygonOffsetUnits=e.polygonOffsetUnits),e.dithering!==void 0&&(this.dithering=e.dithering),e.alphaToCoverage!==void 0&&(this.alphaToCoverage=e.alphaToCoverage),e.premultipliedAlpha!==void 0&&(this.premultipliedAlpha=e.premultipliedAlpha),e.forceSinglePass!==void 0&&(this.forceSinglePass=e.forceSinglePass),e.allowOverride!==void 0&&(this.allowOverride=e.allowOverride),e.visible!==void 0&&(this.visible=e.visible),e.toneMapped!==void 0&&(this.toneMapped=e.toneMapped),e.userData!==void 0&&(this.userData=e.userData),e.vertexColors!==void 0&&(typeof e.vertexColors=="number"?this.vertexColors=e.vertexColors>0:this.vertexColors=e.vertexColors),e.size!==void 0&&(this.size=e.size),e.sizeAttenuation!==void 0&&(this.sizeAttenuation=e.sizeAttenuation),e.map!==void 0&&(this.map=t[e.map]||null),e.matcap!==void 0&&(this.matcap=t[e.matcap]||null),e.alphaMap!==void 0&&(this.alphaMap=t[e.alphaMap]||null),e.bumpMap!==void 0&&(this.bumpMap=t[e.bumpMap]||null),e.bumpScale!==void 0&&(this.bumpScale=e.bumpScale),e.normalMap!==void 0&&(this.normalMap=t[e.normalMap]||null),e.normalMapType!==void 0&&(this.normalMapType=e.normalMapType),e.normalScale!==void 0){let i=e.normalScale;Array.isArray(i)===!1&&(i=[i,i]),this.normalScale=new He().fromArray(i)}return e.displacementMap!==void 0&&(this.displacementMap=t[e.displacementMap]||null),e.displacementScale!==void 0&&(this.displacementScale=e.displacementScale),e.displacementBias!==void 0&&(this.displacementBias=e.displacementBias),e.roughnessMap!==void 0&&(this.roughnessMap=t[e.roughnessMap]||null),e.metalnessMap!==void 0&&(this.metalnessMap=t[e.metalnessMap]||null),e.emissiveMap!==void 0&&(this.emissiveMap=t[e.emissiveMap]||null),e.emissiveIntensity!==void 0&&(this.emissiveIntensity=e.emissiveIntensity),e.specularMap!==void 0&&(this.specularMap=t[e.specularMap]||null),e.specularIntensityMap!==void 0&&(this.specularIntensityMap=t[e.specularIntensityMap]||null),e.specularColorMap!==void 0&&(this.specularColorMap=t[e.specularColorMap]||null),e.envMap!==void 0&&(this.envMap=t[e.envMap]||null),e.envMapRotation!==void 0&&this.envMapRotation.fromArray(e.envMapRotation),e.envMapIntensity!==void 0&&(this.envMapIntensity=e.envMapIntensity),e.reflectivity!==void 0&&(this.reflectivity=e.reflectivity),e.refractionRatio!==void 0&&(this.refractionRatio=e.refractionRatio),e.lightMap!==void 0&&(this.lightMap=t[e.lightMap]||null),e.lightMapIntensity!==void 0&&(this.lightMapIntensity=e.lightMapIntensity),e.aoMap!==void 0&&(this.aoMap=t[e.aoMap]||null),e.aoMapIntensity!==void 0&&(this.aoMapIntensity=e.aoMapIntensity),e.gradientMap!==void 0&&(this.gradientMap=t[e.gradientMap]||null),e.clearcoatMap!==void 0&&(this.clearcoatMap=t[e.clearcoatMap]||null),e.clearcoatRoughnessMap!==void 0&&(this.clearcoatRoughnessMap=t[e.clearcoatRoughnessMap]||null),e.clearcoatNormalMap!==void 0&&(this.clearcoatNormalMap=t[e.clearcoatNormalMap]||null),e.clearcoatNormalScale!==void 0&&(this.clearcoatNormalScale=new He().fromArray(e.clearcoatNormalScale)),e.diffuseRoughnessMap!==void 0&&(this.diffuseRoughnessMap=t[e.diffuseRoughnessMap]||null),e.iridescenceMap!==void 0&&(this.iridescenceMap=t[e.iridescenceMap]||null),e.iridescenceThicknessMap!==void 0&&(this.iridescenceThicknessMap=t[e.iridescenceThicknessMap]||null),e.transmissionMap!==void 0&&(this.transmissionMap=t[e.transmissionMap]||null),e.thicknessMap!==void 0&&(this.thicknessMap=t[e.thicknessMap]||null),e.anisotropyMap!==void 0&&(this.anisotropyMap=t[e.anisotropyMap]||null),e.sheenColorMap!==void 0&&(this.sheenColorMap=t[e.sheenColorMap]||null),e.sheenRoughnessMap!==void 0&&(this.sheenRoughnessMap=t[e.sheenRoughnessMap]||null),this}clone(){return new this.constructor().copy(this)}copy(e){this.name=e.name,this.blending=e.blending,this.side=e.side,this.vertexColors=e.vertexColors,this.opacity=e.opacity,this.transparent=e.transparent,this.blendSrc=e.blendSrc,this.blendDst=e.blendDst,this.blendEquation=e.blendEquation,this.blendSrcAlpha=e.blendSrcAlpha,this.blendDstAlpha=e.blendDstAlpha,this.blendEquationAlpha=e.blendEquationAlpha,this.blendColor.copy(e.blendColor),this.blendAlpha=e.blendAlpha,this.depthFunc=e.depthFunc,this.depthTest=e.depthTest,this.depthWrite=e.depthWrite,this.stencilWriteMask=e.stencilWriteMask,this.stencilFunc=e.stencilFunc,this.stencilRef=e.stencilRef,this.stencilFuncMask=e.stencilFuncMask,this.stencilFail=e.stencilFail,this.stencilZFail=e.stencilZFail,this.stencilZPass=e.stencilZPass,this.stencilWrite=e.stencilWrite;const t=e.clippingPlanes;let i=null;if(t!==null){const r=t.length;i=new Array(r);for(let s=0;s!==r;++s)i[s]=t[s].clone()}return this.clippingPlanes=i,this.clipIntersection=e.clipIntersection,this.clipShadows=e.clipShadows,this.shadowSide=e.shadowSide,this.colorWrite=e.colorWrite,this.precision=e.precision,this.polygonOffset=e.polygonOffset,this.polygonOffsetFactor=e.polygonOffsetFactor,this.polygonOffsetUnits=e.polygonOffsetUnits,this.dithering=e.dithering,this.alphaTest=e.alphaTest,this.alphaHash=e.alphaHash,this.alphaToCoverage=e.alphaToCoverage,this.premultipliedAlpha=e.premultipliedAlpha,this.forceSinglePass=e.forceSinglePass,this.allowOverride=e.allowOverride,this.visible=e.visible,this.toneMapped=e.toneMapped,this.userData=JSON.parse(JSON.stringify(e.userData)),this}dispose(){this.dispatchEvent({type:"dispose"})}set needsUpdate(e){e===!0&&this.version++}}const di=new N,Tc=new N,Na=new N,Ua=new N;class Fa{constructor(e=new N,t=new N(0,0,-1)){this.origin=e,this.direction=t}set(e,t){return this.origin.copy(e),this.direction.copy(t),this}copy(e){return this.origin.copy(e.origin),this.direction.copy(e.direction),this}at(e,t){return t.copy(this.origin).addScaledVector(this.direction,e)}lookAt(e){return this.direction.copy(e).sub(this.origin).normalize(),this}recast(e){return this.origin.copy(this.at(e,di)),this}closestPointToPoint(e,t){t.subVectors(e,this.origin);const i=t.dot(this.direction);return i<0?t.copy(this.origin):t.copy(this.origin).addScaledVector(this.direction,i)}distanceToPoint(e){return Math.sqrt(this.distanceSqToPoint(e))}distanceSqToPoint(e){const t=di.subVectors(e,this.origin).dot(this.direction);return t<0?this.origin.distanceToSquared(e):(di.copy(this.origin).addScaledVector(this.direction,t),di.distanceToSquared(e))}distanceSqToSegment(e,t,i,r){Tc.copy(e).add(t).multiplyScalar(.5),Na.copy(t).sub(e).normalize(),Ua.copy(this.origin).sub(Tc);const s=e.distanceTo(t)*.5,a=-this.direction.dot(Na),o=Ua.dot(this.direction),l=-Ua.dot(Na),c=Ua.lengthSq(),f=Math.abs(1-a*a);let d,u,h,g;if(f>0)if(d=a*l-o,u=a*o-l,g=s*f,d>=0)if(u>=-g)if(u<=g){const x=1/f;d*=x,u*=x,h=d*(d+a*u+2*o)+u*(a*d+u+2*l)+c}else u=s,d=Math.max(0,-(a*u+o)),h=-d*d+u*(u+2*l)+c;else u=-s,d=Math.max(0,-(a*u+o)),h=-d*d+u*(u+2*l)+c;else u<=-g?(d=Math.max(0,-(-a*s+o)),u=d>0?-s:Math.min(Math.max(-s,-l),s),h=-d*d+u*(u+2*l)+c):u<=g?(d=0,u=Math.min(Math.max(-s,-l),s),h=u*(u+2*l)+c):(d=Math.max(0,-(a*s+o)),u=d>0?s:Math.min(Math.max(-s,-l),s),h=-d*d+u*(u+2*l)+c);else u=a>0?-s:s,d=Math.max(0,-(a*u+o)),h=-d*d+u*(u+2*l)+c;return i&&i.copy(this.origin).addScaledVector(this.direction,d),r&&r.copy(Tc).addScaledVector(Na,u),h}intersectSphere(e,t){if(e.radius<0)return null;di.subVectors(e.center,this.origin);const i=di.dot(this.direction),r=di.dot(di)-i*i,s=e.radius*e.radius;if(r>s)return null;const a=Math.sqrt(s-r),o=i-a,l=i+a;return l<0?null:o<0?this.at(l,t):this.at(o,t)}intersectsSphere(e){return e.radius<0?!1:this.distanceSqToPoint(e.center)<=e.radius*e.radius}distanceToPlane(e){const t=e.normal.dot(this.direction);if(t===0)return e.distanceToPoint(this.origin)===0?0:null;const i=-(this.origin.dot(e.normal)+e.constant)/t;return i>=0?i:null}intersectPlane(e,t){const i=this.distanceToPlane(e);return i===null?null:this.at(i,t)}intersectsPlane(e){const t=e.distanceToPoint(this.origin);return t===0||e.normal.dot(this.direction)*t<0}intersectBox(e,t){let i,r,s,a,o,l;const c=1/this.direction.x,f=1/this.direction.y,d=1/this.direction.z,u=this.origin;return c>=0?(i=(e.min.x-u.x)*c,r=(e.max.x-u.x)*c):(i=(e.max.x-u.x)*c,r=(e.min.x-u.x)*c),f>=0?(s=(e.min.y-u.y)*f,a=(e.max.y-u.y)*f):(s=(e.max.y-u.y)*f,a=(e.min.y-u.y)*f),i>a||s>r||((s>i||isNaN(i))&&(i=s),(a<r||isNaN(r))&&(r=a),d>=0?(o=(e.min.z-u.z)*d,l=(e.max.z-u.z)*d):(o=(e.max.z-u.z)*d,l=(e.min.z-u.z)*d),i>l||o>r)||((o>i||i!==i)&&(i=o),(l<r||r!==r)&&(r=l),r<0)?null:this.at(i>=0?i:r,t)}intersectsBox(e){return this.intersectBox(e,di)!==null}intersectTriangle(e,t,i,r,s){const a=this.origin,o=this.direction,l=o.x,c=o.y,f=o.z,d=e.x-a.x,u=e.y-a.y,h=e.z-a.z,g=t.x-a.x,x=t.y-a.y,m=t.z-a.z,p=i.x-a.x,v=i.y-a.y,M=i.z-a.z,S=Math.abs(l),b=Math.abs(c),w=Math.abs(f);let _,y,I,R,P,D,O,L,k,V,W,te;if(S>=b&&S>=w?(I=l,D=d,k=g,te=p,l>=0?(_=c,y=f,R=u,P=h,O=x,L=m,V=v,W=M):(_=f,y=c,R=h,P=u,O=m,L=x,V=M,W=v)):b>=w?(I=c,D=u,k=x,te=v,c>=0?(_=f,y=l,R=h,P=d,O=m,L=g,V=M,W=p):(_=l,y=f,R=d,P=h,O=g,L=m,V=p,W=M)):(I=f,D=h,k=m,te=M,f>=0?(_=l,y=c,R=d,P=u,O=g,L=x,V=p,W=v):(_=c,y=l,R=u,P=d,O=x,L=g,V=v,W=p)),I===0)return null;const $=_/I,j=y/I,ee=1/I,Se=R-$*D,De=P-j*D,Z=O-$*k,fe=L-j*k,xe=V-$*te,we=W-j*te,ge=xe*fe-we*Z,Ie=Se*we-De*xe,mt=Z*De-fe*Se;if(r){if(ge<0||Ie<0||mt<0)return null}else if((ge<0||Ie<0||mt<0)&&(ge>0||Ie>0||mt>0))return null;const Re=ge+Ie+mt;if(Re===0)return null;const $e=ee*(ge*D+Ie*k+mt*te);return(Re>0?$e<0:$e>0)?null:this.at($e/Re,s)}applyMatrix4(e){return this.origin.applyMatrix4(e),this.direction.transformDirection(e),this}equals(e){return e.origin.equals(this.origin)&&e.direction.equals(this.direction)}clone(){return new this.constructor().copy(this)}}class dg extends Ds{constructor(e){super(),this.isMeshBasicMaterial=!0,this.type="MeshBasicMaterial",this.color=new Ye(16777215),this.map=null,this.lightMap=null,this.lightMapIntensity=1,this.aoMap=null,this.aoMapIntensity=1,this.specularMap=null,this.alphaMap=null,this.envMap=null,this.envMapRotation=new Qi,this.combine=Sf,this.reflectivity=1,this.refractionRatio=.98,this.wireframe=!1,this.wireframeLinewidth=1,this.wireframeLinecap="round",this.wireframeLinejoin="round",this.fog=!0,this.setValues(e)}copy(e){return super.copy(e),this.color.copy(e.color),this.map=e.map,this.lightMap=e.lightMap,this.lightMapIntensity=e.lightMapIntensity,this.aoMap=e.aoMap,this.aoMapIntensity=e.aoMapIntensity,this.specularMap=e.specularMap,this.alphaMap=e.alphaMap,this.envMap=e.envMap,this.envMapRotation.copy(e.envMapRotation),this.combine=e.combine,this.reflectivity=e.reflectivity,this.refractionRatio=e.refractionRatio,this.wireframe=e.wireframe,this.wireframeLinewidth=e.wireframeLinewidth,this.wireframeLinecap=e.wireframeLinecap,this.wireframeLinejoin=e.wireframeLinejoin,this.fog=e.fog,this}}const ad=new je,tr=new Fa,Oa=new Ia,od=new N,Ba=new N,ka=new N,za=new N,Ac=new N,Ha=new N,ld=new N,Ga=new N;class hi extends nn{constructor(e=new Hn,t=new dg){super(),this.isMesh=!0,this.type="Mesh",this.geometry=e,this.material=t,this.morphTargetDictionary=void 0,this.morphTargetInfluences=void 0,this.count=1,this.updateMorphTargets()}copy(e,t){return super.copy(e,t),e.morphTargetInfluences!==void 0?this.morphTargetInfluences=e.morphTargetInfluences.slice():this.morphTargetInfluences=void 0,e.morphTargetDictionary!==void 0?this.morphTargetDictionary=Object.assign({},e.morphTargetDictionary):this.morphTargetDictionary=void 0,this.material=Array.isArray(e.material)?e.material.slice():e.material,this.geometry=e.geometry,this}updateMorphTargets(){const t=this.geometry.morphAttributes,i=Object.keys(t);if(i.length>0){const r=t[i[0]];if(r!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let s=0,a=r.length;s<a;s++){const o=r[s].name||String(s);this.morphTargetInfluences.push(0),this.morphTargetDictionary[o]=s}}}}getVertexPosition(e,t){const i=this.geometry,r=i.attributes.position,s=i.morphAttributes.position,a=i.morphTargetsRelative;t.fromBufferAttribute(r,e);const o=this.morphTargetInfluences;if(s&&o){Ha.set(0,0,0);for(let l=0,c=s.length;l<c;l++){const f=o[l],d=s[l];f!==0&&(Ac.fromBufferAttribute(d,e),a?Ha.addScaledVector(Ac,f):Ha.addScaledVector(Ac.sub(t),f))}t.add(Ha)}return t}intersectsFrustum(e){return e.intersectsObject(this)}raycast(e,t){const i=this.geometry,r=this.material,s=this.matrixWorld;r!==void 0&&(i.boundingSphere===null&&i.computeBoundingSphere(),Oa.copy(i.boundingSphere),Oa.applyMatrix4(s),tr.copy(e.ray).recast(e.near),!(Oa.containsPoint(tr.origin)===!1&&(tr.intersectSphere(Oa,od)===null||tr.origin.distanceToSquared(od)>(e.far-e.near)**2))&&(ad.copy(s).invert(),tr.copy(e.ray).applyMatrix4(ad),!(i.boundingBox!==null&&tr.intersectsBox(i.boundingBox)===!1)&&this._computeIntersections(e,t,tr)))}_computeIntersections(e,t,i){let r;const s=this.geometry,a=this.material,o=s.index,l=s.attributes.position,c=s.attributes.uv,f=s.attributes.uv1,d=s.attributes.normal,u=s.groups,h=s.drawRange;if(o!==null)if(Array.isArray(a))for(let g=0,x=u.length;g<x;g++){const m=u[g],p=a[m.materialIndex],v=Math.max(m.start,h.start),M=Math.min(o.count,Math.min(m.start+m.count,h.start+h.count));for(let S=v,b=M;S<b;S+=3){const w=o.getX(S),_=o.getX(S+1),y=o.getX(S+2);r=Va(this,p,e,i,c,f,d,w,_,y),r&&(r.faceIndex=Math.floor(S/3),r.face.materialIndex=m.materialIndex,t.push(r))}}else{const g=Math.max(0,h.start),x=Math.min(o.count,h.start+h.count);for(let m=g,p=x;m<p;m+=3){const v=o.getX(m),M=o.getX(m+1),S=o.getX(m+2);r=Va(this,a,e,i,c,f,d,v,M,S),r&&(r.faceIndex=Math.floor(m/3),t.push(r))}}else if(l!==void 0)if(Array.isArray(a))for(let g=0,x=u.length;g<x;g++){const m=u[g],p=a[m.materialIndex],v=Math.max(m.start,h.start),M=Math.min(l.count,Math.min(m.start+m.count,h.start+h.count));for(let S=v,b=M;S<b;S+=3){const w=S,_=S+1,y=S+2;r=Va(this,p,e,i,c,f,d,w,_,y),r&&(r.faceIndex=Math.floor(S/3),r.face.materialIndex=m.materialIndex,t.push(r))}}else{const g=Math.max(0,h.start),x=Math.min(l.count,h.start+h.count);for(let m=g,p=x;m<p;m+=3){const v=m,M=m+1,S=m+2;r=Va(this,a,e,i,c,f,d,v,M,S),r&&(r.faceIndex=Math.floor(m/3),t.push(r))}}}}function hg(n,e,t,i,r,s,a,o){let l;if(e.side===Kt?l=i.intersectTriangle(a,s,r,!0,o):l=i.intersectTriangle(r,s,a,e.side===ri,o),l===null)return null;Ga.copy(o),Ga.applyMatrix4(n.matrixWorld);const c=t.ray.origin.distanceTo(Ga);return c<t.near||c>t.far?null:{distance:c,point:Ga.clone(),object:n}}function Va(n,e,t,i,r,s,a,o,l,c){n.getVertexPosition(o,Ba),n.getVertexPosition(l,ka),n.getVertexPosition(c,za);const f=hg(n,e,t,i,Ba,ka,za,ld);if(f){const d=new N;Bt.getBarycoord(ld,Ba,ka,za,d),r&&(f.uv=Bt.getInterpolatedAttribute(r,o,l,c,d,new He)),s&&(f.uv1=Bt.getInterpolatedAttribute(s,o,l,c,d,new He)),a&&(f.normal=Bt.getInterpolatedAttribute(a,o,l,c,d,new N),f.normal.dot(i.direction)>0&&f.normal.multiplyScalar(-1));const u={a:o,b:l,c,normal:new N,materialIndex:0};Bt.getNormal(Ba,ka,za,u.normal),f.face=u,f.barycoord=d}return f}class pg extends Zt{constructor(e=null,t=1,i=1,r,s,a,o,l,c=Ot,f=Ot,d,u){super(null,a,o,l,c,f,r,s,d,u),this.isDataTexture=!0,this.image={data:e,width:t,height:i},this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1}}const nr=new Ia,mg=new He(.5,.5),Wa=new N;class Xa{constructor(e=new Gn,t=new Gn,i=new Gn,r=new Gn,s=new Gn,a=new Gn){this.planes=[e,t,i,r,s,a]}set(e,t,i,r,s,a){const o=this.planes;return o[0].copy(e),o[1].copy(t),o[2].copy(i),o[3].copy(r),o[4].copy(s),o[5].copy(a),this}copy(e){const t=this.planes;for(let i=0;i<6;i++)t[i].copy(e.planes[i]);return this}setFromProjectionMatrix(e,t=wn,i=!1){const r=this.planes,s=e.elements,a=s[0],o=s[1],l=s[2],c=s[3],f=s[4],d=s[5],u=s[6],h=s[7],g=s[8],x=s[9],m=s[10],p=s[11],v=s[12],M=s[13],S=s[14],b=s[15];if(r[0].setComponents(c-a,h-f,p-g,b-v).normalize(),r[1].setComponents(c+a,h+f,p+g,b+v).normalize(),r[2].setComponents(c+o,h+d,p+x,b+M).normalize(),r[3].setComponents(c-o,h-d,p-x,b-M).normalize(),i)r[4].setComponents(l,u,m,S).normalize(),r[5].setComponents(c-l,h-u,p-m,b-S).normalize();else if(r[4].setComponents(c-l,h-u,p-m,b-S).normalize(),t===wn)r[5].setComponents(c+l,h+u,p+m,b+S).normalize();else if(t===ya)r[5].setComponents(l,u,m,S).normalize();else throw new Error("THREE.Frustum.setFromProjectionMatrix(): Invalid coordinate system: "+t);return this}intersectsObject(e){if(e.boundingSphere!==void 0)e.boundingSphere===null&&e.computeBoundingSphere(),nr.copy(e.boundingSphere).applyMatrix4(e.matrixWorld);else{const t=e.geometry;t.boundingSphere===null&&t.computeBoundingSphere(),nr.copy(t.boundingSphere).applyMatrix4(e.matrixWorld)}return this.intersectsSphere(nr)}intersectsSprite(e){nr.center.set(0,0,0);const t=mg.distanceTo(e.center);return nr.radius=.7071067811865476+t,nr.applyMatrix4(e.matrixWorld),this.intersectsSphere(nr)}intersectsSphere(e){const t=this.planes,i=e.center,r=-e.radius;for(let s=0;s<6;s++)if(t[s].distanceToPoint(i)<r)return!1;return!0}intersectsBox(e){const t=this.planes;for(let i=0;i<6;i++){const r=t[i];if(Wa.x=r.normal.x>0?e.max.x:e.min.x,Wa.y=r.normal.y>0?e.max.y:e.min.y,Wa.z=r.normal.z>0?e.max.z:e.min.z,r.distanceToPoint(Wa)<0)return!1}return!0}containsPoint(e){const t=this.planes;for(let i=0;i<6;i++)if(t[i].distanceToPoint(e)<0)return!1;return!0}clone(){return new this.constructor().copy(this)}}const cd=new je;class wc{constructor(){this.coordinateSystem=wn,this._frustums=[],this._count=0}setFromArrayCamera(e){const t=e.cameras,i=this._frustums;for(let r=0;r<t.length;r++){const s=t[r];cd.multiplyMatrices(s.projectionMatrix,s.matrixWorldInverse),i[r]===void 0&&(i[r]=new Xa),i[r].setFromProjectionMatrix(cd,s.coordinateSystem,s.reversedDepth)}return this._count=t.length,this}getFrustum(e){return this._frustums[e]}intersectsObject(e){const t=this._frustums;for(let i=0;i<this._count;i++)if(t[i].intersectsObject(e))return!0;return!1}intersectsSprite(e){const t=this._frustums;for(let i=0;i<this._count;i++)if(t[i].intersectsSprite(e))return!0;return!1}intersectsSphere(e){const t=this._frustums;for(let i=0;i<this._count;i++)if(t[i].intersectsSphere(e))return!0;return!1}intersectsBox(e){const t=this._frustums;for(let i=0;i<this._count;i++)if(t[i].intersectsBox(e))return!0;return!1}containsPoint(e){const t=this._frustums;for(let i=0;i<this._count;i++)if(t[i].containsPoint(e))return!0;return!1}copy(e){this.coordinateSystem=e.coordinateSystem;const t=this._frustums,i=e._frustums;for(let r=0;r<e._count;r++)t[r]===void 0&&(t[r]=new Xa),t[r].copy(i[r]);return this._count=e._count,this}clone(){return new wc().copy(this)}}class ud extends Ds{constructor(e){super(),this.isLineBasicMaterial=!0,this.type="LineBasicMaterial",this.color=new Ye(16777215),this.map=null,this.linewidth=1,this.linecap="round",this.linejoin="round",this.fog=!0,this.setValues(e)}copy(e){return super.copy(e),this.color.copy(e.color),this.map=e.map,this.linewidth=e.linewidth,this.linecap=e.linecap,this.linejoin=e.linejoin,this.fog=e.fog,this}}const $a=new N,qa=new N,fd=new je,Is=new Fa,Ya=new Ia,Rc=new N,dd=new N;class gg extends nn{constructor(e=new Hn,t=new ud){super(),this.isLine=!0,this.type="Line",this.geometry=e,this.material=t,this.morphTargetDictionary=void 0,this.morphTargetInfluences=void 0,this.updateMorphTargets()}copy(e,t){return super.copy(e,t),e.morphTargetInfluences!==void 0?this.morphTargetInfluences=e.morphTargetInfluences.slice():this.morphTargetInfluences=void 0,e.morphTargetDictionary!==void 0?this.morphTargetDictionary=Object.assign({},e.morphTargetDictionary):this.morphTargetDictionary=void 0,this.material=Array.isArray(e.material)?e.material.slice():e.material,this.geometry=e.geometry,this}computeLineDistances(){const e=this.geometry;if(e.index===null){const t=e.attributes.position,i=[0];for(let r=1,s=t.count;r<s;r++)$a.fromBufferAttribute(t,r-1),qa.fromBufferAttribute(t,r),i[r]=i[r-1],i[r]+=$a.distanceTo(qa);e.setAttribute("lineDistance",new Dn(i,1))}else Pe("Line.computeLineDistances(): Computation only possible with non-indexed BufferGeometry.");return this}intersectsFrustum(e){return e.intersectsObject(this)}raycast(e,t){const i=this.geometry,r=this.matrixWorld,s=e.params.Line.threshold,a=i.drawRange;if(i.boundingSphere===null&&i.computeBoundingSphere(),Ya.copy(i.boundingSphere),Ya.applyMatrix4(r),Ya.radius+=s,e.ray.intersectsSphere(Ya)===!1)return;fd.copy(r).invert(),Is.copy(e.ray).applyMatrix4(fd);const o=s/((this.scale.x+this.scale.y+this.scale.z)/3),l=o*o,c=this.isLineSegments?2:1,f=i.index,u=i.attributes.position;if(f!==null){const h=Math.max(0,a.start),g=Math.min(f.count,a.start+a.count);for(let x=h,m=g-1;x<m;x+=c){const p=f.getX(x),v=f.getX(x+1),M=Ka(this,e,Is,l,p,v,x);M&&t.push(M)}if(this.isLineLoop){const x=f.getX(g-1),m=f.getX(h),p=Ka(this,e,Is,l,x,m,g-1);p&&t.push(p)}}else{const h=Math.max(0,a.start),g=Math.min(u.count,a.start+a.count);for(let x=h,m=g-1;x<m;x+=c){const p=Ka(this,e,Is,l,x,x+1,x);p&&t.push(p)}if(this.isLineLoop){const x=Ka(this,e,Is,l,g-1,h,g-1);x&&t.push(x)}}}updateMorphTargets(){const t=this.geometry.morphAttributes,i=Object.keys(t);if(i.length>0){const r=t[i[0]];if(r!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let s=0,a=r.length;s<a;s++){const o=r[s].name||String(s);this.morphTargetInfluences.push(0),this.morphTargetDictionary[o]=s}}}}}function Ka(n,e,t,i,r,s,a){const o=n.geometry.attributes.position;if($a.fromBufferAttribute(o,r),qa.fromBufferAttribute(o,s),t.distanceSqToSegment($a,qa,Rc,dd)>i)return;Rc.applyMatrix4(n.matrixWorld);const c=e.ray.origin.distanceTo(Rc);if(!(c<e.near||c>e.far))return{distance:c,point:dd.clone().applyMatrix4(n.matrixWorld),index:a,face:null,faceIndex:null,barycoord:null,object:n}}const hd=new N,pd=new N;class _g extends gg{constructor(e,t){super(e,t),this.isLineSegments=!0,this.type="LineSegments"}computeLineDistances(){const e=this.geometry;if(e.index===null){const t=e.attributes.position,i=[];for(let r=0,s=t.count;r<s;r+=2)hd.fromBufferAttribute(t,r),pd.fromBufferAttribute(t,r+1),i[r]=r===0?0:i[r-1],i[r+1]=i[r]+hd.distanceTo(pd);e.setAttribute("lineDistance",new Dn(i,1))}else Pe("LineSegments.computeLineDistances(): Computation only possible with non-indexed BufferGeometry.");return this}}class md extends Zt{constructor(e=[],t=br,i,r,s,a,o,l,c,f){super(e,t,i,r,s,a,o,l,c,f),this.isCubeTexture=!0,this.flipY=!1}get images(){return this.image}set images(e){this.image=e}}class Fr extends Zt{constructor(e,t,i=On,r,s,a,o=Ot,l=Ot,c,f=bi,d=1){if(f!==bi&&f!==Ei)throw new Error("THREE.DepthTexture: format must be either THREE.DepthFormat or THREE.DepthStencilFormat");const u={width:e,height:t,depth:d};super(u,r,s,a,o,l,f,i,c),this.isDepthTexture=!0,this.flipY=!1,this.generateMipmaps=!1,this.compareFunction=null}copy(e){return super.copy(e),this.source=new lc(Object.assign({},e.image)),this.compareFunction=e.compareFunction,this}toJSON(e){const t=super.toJSON(e);return t.compareFunction=this.compareFunction,t}}class gd extends Fr{constructor(e,t=On,i=br,r,s,a=Ot,o=Ot,l,c=bi){const f={width:e,height:e,depth:1},d=[f,f,f,f,f,f];super(e,e,t,i,r,s,a,o,l,c),this.image=d,this.isCubeDepthTexture=!0,this.isCubeTexture=!0}get images(){return this.image}set images(e){this.image=e}}class _d extends Zt{constructor(e=null){super(),this.sourceTexture=e,this.isExternalTexture=!0}copy(e){return super.copy(e),this.sourceTexture=e.sourceTexture,this}}class Ns extends Hn{constructor(e=1,t=1,i=1,r=1,s=1,a=1){super(),this.type="BoxGeometry",this.parameters={width:e,height:t,depth:i,widthSegments:r,heightSegments:s,depthSegments:a};const o=this;r=Math.floor(r),s=Math.floor(s),a=Math.floor(a);const l=[],c=[],f=[],d=[];let u=0,h=0;g("z","y","x",-1,-1,i,t,e,a,s,0),g("z","y","x",1,-1,i,t,-e,a,s,1),g("x","z","y",1,1,e,i,t,r,a,2),g("x","z","y",1,-1,e,i,-t,r,a,3),g("x","y","z",1,-1,e,t,i,r,s,4),g("x","y","z",-1,-1,e,t,-i,r,s,5),this.setIndex(l),this.setAttribute("position",new Dn(c,3)),this.setAttribute("normal",new Dn(f,3)),this.setAttribute("uv",new Dn(d,2));function g(x,m,p,v,M,S,b,w,_,y,I){const R=S/_,P=b/y,D=S/2,O=b/2,L=w/2,k=_+1,V=y+1;let W=0,te=0;const $=new N;for(let j=0;j<V;j++){const ee=j*P-O;for(let Se=0;Se<k;Se++){const De=Se*R-D;$[x]=De*v,$[m]=ee*M,$[p]=L,c.push($.x,$.y,$.z),$[x]=0,$[m]=0,$[p]=w>0?1:-1,f.push($.x,$.y,$.z),d.push(Se/_),d.push(1-j/y),W+=1}}for(let j=0;j<y;j++)for(let ee=0;ee<_;ee++){const Se=u+ee+k*j,De=u+ee+k*(j+1),Z=u+(ee+1)+k*(j+1),fe=u+(ee+1)+k*j;l.push(Se,De,fe),l.push(De,Z,fe),te+=6}o.addGroup(h,te,I),h+=te,u+=W}}copy(e){return super.copy(e),this.parameters=Object.assign({},e.parameters),this}static fromJSON(e){return new Ns(e.width,e.height,e.depth,e.widthSegments,e.heightSegments,e.depthSegments)}}class Za extends Hn{constructor(e=1,t=1,i=1,r=1){super(),this.type="PlaneGeometry",this.parameters={width:e,height:t,widthSegments:i,heightSegments:r};const s=e/2,a=t/2,o=Math.floor(i),l=Math.floor(r),c=o+1,f=l+1,d=e/o,u=t/l,h=[],g=[],x=[],m=[];for(let p=0;p<f;p++){const v=p*u-a;for(let M=0;M<c;M++){const S=M*d-s;g.push(S,-v,0),x.push(0,0,1),m.push(M/o),m.push(1-p/l)}}for(let p=0;p<l;p++)for(let v=0;v<o;v++){const M=v+c*p,S=v+c*(p+1),b=v+1+c*(p+1),w=v+1+c*p;h.push(M,S,w),h.push(S,b,w)}this.setIndex(h),this.setAttribute("position",new Dn(g,3)),this.setAttribute("normal",new Dn(x,3)),this.setAttribute("uv",new Dn(m,2))}copy(e){return super.copy(e),this.parameters=Object.assign({},e.parameters),this}static fromJSON(e){return new Za(e.width,e.height,e.widthSegments,e.heightSegments)}}function Or(n){const e={};for(const t in n){e[t]={};for(const i in n[t]){const r=n[t][i];if(vd(r))r.isRenderTargetTexture?(Pe("UniformsUtils: Textures of render targets cannot be cloned via cloneUniforms() or mergeUniforms()."),e[t][i]=null):e[t][i]=r.clone();else if(Array.isArray(r))if(vd(r[0])){const s=[];for(let a=0,o=r.length;a<o;a++)s[a]=r[a].clone();e[t][i]=s}else e[t][i]=r.slice();else e[t][i]=r}}return e}function Qt(n){const e={};for(let t=0;t<n.length;t++){const i=Or(n[t]);for(const r in i)e[r]=i[r]}return e}function vd(n){return n&&(n.isColor||n.isMatrix3||n.isMatrix4||n.isVector2||n.isVector3||n.isVector4||n.isTexture||n.isQuaternion)}function vg(n){const e=[];for(let t=0;t<n.length;t++)e.push(n[t].clone());return e}function xd(n){const e=n.getRenderTarget();return e===null?n.outputColorSpace:e.isXRRenderTarget===!0?e.texture.colorSpace:Xe.workingColorSpace}const xg={clone:Or,merge:Qt};var Sg=`void main() {
+	gl_Position = projectionMatrix * modelViewMatrix * vec4( position, 1.0 );
+}`,Mg=`void main() {
+	gl_FragColor = vec4( 1.0, 0.0, 0.0, 1.0 );
+}`;class Li extends Ds{constructor(e){super(),this.isShaderMaterial=!0,this.type="ShaderMaterial",this.defines={},this.uniforms={},this.uniformsGroups=[],this.vertexShader=Sg,this.fragmentShader=Mg,this.linewidth=1,this.wireframe=!1,this.wireframeLinewidth=1,this.fog=!1,this.lights=!1,this.clipping=!1,this.forceSinglePass=!0,this.extensions={clipCullDistance:!1,multiDraw:!1},this.defaultAttributeValues={color:[1,1,1],uv:[0,0],uv1:[0,0]},this.index0AttributeName=void 0,this.uniformsNeedUpdate=!1,this.glslVersion=null,e!==void 0&&this.setValues(e)}copy(e){return super.copy(e),this.fragmentShader=e.fragmentShader,this.vertexShader=e.vertexShader,this.uniforms=Or(e.uniforms),this.uniformsGroups=vg(e.uniformsGroups),this.defines=Object.assign({},e.defines),this.wireframe=e.wireframe,this.wireframeLinewidth=e.wireframeLinewidth,this.fog=e.fog,this.lights=e.lights,this.clipping=e.clipping,this.extensions=Object.assign({},e.extensions),this.glslVersion=e.glslVersion,this.defaultAttributeValues=Object.assign({},e.defaultAttributeValues),this.index0AttributeName=e.index0AttributeName,this.uniformsNeedUpdate=e.uniformsNeedUpdate,this}toJSON(e){const t=super.toJSON(e);t.glslVersion=this.glslVersion,t.uniforms={};for(const r in this.uniforms){const a=this.uniforms[r].value;a&&a.isTexture?t.uniforms[r]={type:"t",value:a.toJSON(e).uuid}:a&&a.isColor?t.uniforms[r]={type:"c",value:a.getHex()}:a&&a.isVector2?t.uniforms[r]={type:"v2",value:a.toArray()}:a&&a.isVector3?t.uniforms[r]={type:"v3",value:a.toArray()}:a&&a.isVector4?t.uniforms[r]={type:"v4",value:a.toArray()}:a&&a.isMatrix3?t.uniforms[r]={type:"m3",value:a.toArray()}:a&&a.isMatrix4?t.uniforms[r]={type:"m4",value:a.toArray()}:t.uniforms[r]={value:a}}Object.keys(this.defines).length>0&&(t.defines=this.defines),t.vertexShader=this.vertexShader,t.fragmentShader=this.fragmentShader,t.lights=this.lights,t.clipping=this.clipping;const i={};for(const r in this.extensions)this.extensions[r]===!0&&(i[r]=!0);return Object.keys(i).length>0&&(t.extensions=i),t}fromJSON(e,t){if(super.fromJSON(e,t),e.uniforms!==void 0)for(const i in e.uniforms){const r=e.uniforms[i];switch(this.uniforms[i]={},r.type){case"t":this.uniforms[i].value=t[r.value]||null;break;case"c":this.uniforms[i].value=new Ye().setHex(r.value);break;case"v2":this.uniforms[i].value=new He().fromArray(r.value);break;case"v3":this.uniforms[i].value=new N().fromArray(r.value);break;case"v4":this.uniforms[i].value=new at().fromArray(r.value);break;case"m3":this.uniforms[i].value=new Fe().fromArray(r.value);break;case"m4":this.uniforms[i].value=new je().fromArray(r.value);break;default:this.uniforms[i].value=r.value}}if(e.defines!==void 0&&(this.defines=e.defines),e.vertexShader!==void 0&&(this.vertexShader=e.vertexShader),e.fragmentShader!==void 0&&(this.fragmentShader=e.fragmentShader),e.glslVersion!==void 0&&(this.glslVersion=e.glslVersion),e.extensions!==void 0)for(const i in e.extensions)this.extensions[i]=e.extensions[i];return e.lights!==void 0&&(this.lights=e.lights),e.clipping!==void 0&&(this.clipping=e.clipping),this}}class yg extends Li{constructor(e){super(e),this.isRawShaderMaterial=!0,this.type="RawShaderMaterial"}}class bg extends Ds{constructor(e){super(),this.isMeshDepthMaterial=!0,this.type="MeshDepthMaterial",this.depthPacking=Pm,this.map=null,this.alphaMap=null,this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.wireframe=!1,this.wireframeLinewidth=1,this.setValues(e)}copy(e){return super.copy(e),this.depthPacking=e.depthPacking,this.map=e.map,this.alphaMap=e.alphaMap,this.displacementMap=e.displacementMap,this.displacementScale=e.displacementScale,this.displacementBias=e.displacementBias,this.wireframe=e.wireframe,this.wireframeLinewidth=e.wireframeLinewidth,this}}class Eg extends Ds{constructor(e){super(),this.isMeshDistanceMaterial=!0,this.type="MeshDistanceMaterial",this.map=null,this.alphaMap=null,this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.setValues(e)}copy(e){return super.copy(e),this.map=e.map,this.alphaMap=e.alphaMap,this.displacementMap=e.displacementMap,this.displacementScale=e.displacementScale,this.displacementBias=e.displacementBias,this}}const Ja=new N,Qa=new Ai,Vn=new N;class Sd extends nn{constructor(){super(),this.isCamera=!0,this.type="Camera",this.matrixWorldInverse=new je,this.projectionMatrix=new je,this.projectionMatrixInverse=new je,this.coordinateSystem=wn,this._reversedDepth=!1}get reversedDepth(){return this._reversedDepth}copy(e,t){return super.copy(e,t),this.matrixWorldInverse.copy(e.matrixWorldInverse),this.projectionMatrix.copy(e.projectionMatrix),this.projectionMatrixInverse.copy(e.projectionMatrixInverse),this.coordinateSystem=e.coordinateSystem,this}getWorldDirection(e){return super.getWorldDirection(e).negate()}updateMatrixWorld(e){super.updateMatrixWorld(e),this.matrixWorld.decompose(Ja,Qa,Vn),Vn.x===1&&Vn.y===1&&Vn.z===1?this.matrixWorldInverse.copy(this.matrixWorld).invert():this.matrixWorldInverse.compose(Ja,Qa,Vn.set(1,1,1)).invert()}updateWorldMatrix(e,t,i=!1){super.updateWorldMatrix(e,t,i),this.matrixWorld.decompose(Ja,Qa,Vn),Vn.x===1&&Vn.y===1&&Vn.z===1?this.matrixWorldInverse.copy(this.matrixWorld).invert():this.matrixWorldInverse.compose(Ja,Qa,Vn.set(1,1,1)).invert()}clone(){return new this.constructor().copy(this)}}const Di=new N,Md=new He,yd=new He;class gn extends Sd{constructor(e=50,t=1,i=.1,r=2e3){super(),this.isPerspectiveCamera=!0,this.type="PerspectiveCamera",this.fov=e,this.zoom=1,this.near=i,this.far=r,this.focus=10,this.aspect=t,this.view=null,this.filmGauge=35,this.filmOffset=0,this.updateProjectionMatrix()}copy(e,t){return super.copy(e,t),this.fov=e.fov,this.zoom=e.zoom,this.near=e.near,this.far=e.far,this.focus=e.focus,this.aspect=e.aspect,this.view=e.view===null?null:Object.assign({},e.view),this.filmGauge=e.filmGauge,this.filmOffset=e.filmOffset,this}setFocalLength(e){const t=.5*this.getFilmHeight()/e;this.fov=ic*2*Math.atan(t),this.updateProjectionMatrix()}getFocalLength(){const e=Math.tan(nc*.5*this.fov);return .5*this.getFilmHeight()/e}getEffectiveFOV(){return ic*2*Math.atan(Math.tan(nc*.5*this.fov)/this.zoom)}getFilmWidth(){return this.filmGauge*Math.min(this.aspect,1)}getFilmHeight(){return this.filmGauge/Math.max(this.aspect,1)}getViewBounds(e,t,i){Di.set(-1,-1,.5).applyMatrix4(this.projectionMatrixInverse),t.set(Di.x,Di.y).multiplyScalar(-e/Di.z),Di.set(1,1,.5).applyMatrix4(this.projectionMatrixInverse),i.set(Di.x,Di.y).multiplyScalar(-e/Di.z)}getViewSize(e,t){return this.getViewBounds(e,Md,yd),t.subVectors(yd,Md)}setViewOffset(e,t,i,r,s,a){this.aspect=e/t,this.view===null&&(this.view={enabled:!0,fullWidth:1,fullHeight:1,offsetX:0,offsetY:0,width:1,height:1}),this.view.enabled=!0,this.view.fullWidth=e,this.view.fullHeight=t,this.view.offsetX=i,this.view.offsetY=r,this.view.width=s,this.view.height=a,this.updateProjectionMatrix()}clearViewOffset(){this.view!==null&&(this.view.enabled=!1),this.updateProjectionMatrix()}updateProjectionMatrix(){const e=this.near;let t=e*Math.tan(nc*.5*this.fov)/this.zoom,i=2*t,r=this.aspect*i,s=-.5*r;const a=this.view;if(this.view!==null&&this.view.enabled){const l=a.fullWidth,c=a.fullHeight;s+=a.offsetX*r/l,t-=a.offsetY*i/c,r*=a.width/l,i*=a.height/c}const o=this.filmOffset;o!==0&&(s+=e*o/this.getFilmWidth()),this.projectionMatrix.makePerspective(s,s+r,t,t-i,e,this.far,this.coordinateSystem,this.reversedDepth),this.projectionMatrixInverse.copy(this.projectionMatrix).invert()}toJSON(e){const t=super.toJSON(e);return t.object.fov=this.fov,t.object.zoom=this.zoom,t.object.near=this.near,t.object.far=this.far,t.object.focus=this.focus,t.object.aspect=this.aspect,this.view!==null&&(t.object.view=Object.assign({},this.view)),t.object.filmGauge=this.filmGauge,t.object.filmOffset=this.filmOffset,t}}class Tg extends Sd{constructor(e=-1,t=1,i=1,r=-1,s=.1,a=2e3){super(),this.isOrthographicCamera=!0,this.type="OrthographicCamera",this.zoom=1,this.view=null,this.left=e,this.right=t,this.top=i,this.bottom=r,this.near=s,this.far=a,this.updateProjectionMatrix()}copy(e,t){return super.copy(e,t),this.left=e.left,this.right=e.right,this.top=e.top,this.bottom=e.bottom,this.near=e.near,this.far=e.far,this.zoom=e.zoom,this.view=e.view===null?null:Object.assign({},e.view),this}setViewOffset(e,t,i,r,s,a){this.view===null&&(this.view={enabled:!0,fullWidth:1,fullHeight:1,offsetX:0,offsetY:0,width:1,height:1}),this.view.enabled=!0,this.view.fullWidth=e,this.view.fullHeight=t,this.view.offsetX=i,this.view.offsetY=r,this.view.width=s,this.view.height=a,this.updateProjectionMatrix()}clearViewOffset(){this.view!==null&&(this.view.enabled=!1),this.updateProjectionMatrix()}updateProjectionMatrix(){const e=(this.right-this.left)/(2*this.zoom),t=(this.top-this.bottom)/(2*this.zoom),i=(this.right+this.left)/2,r=(this.top+this.bottom)/2;let s=i-e,a=i+e,o=r+t,l=r-t;if(this.view!==null&&this.view.enabled){const c=(this.right-this.left)/this.view.fullWidth/this.zoom,f=(this.top-this.bottom)/this.view.fullHeight/this.zoom;s+=c*this.view.offsetX,a=s+c*this.view.width,o-=f*this.view.offsetY,l=o-f*this.view.height}this.projectionMatrix.makeOrthographic(s,a,o,l,this.near,this.far,this.coordinateSystem,this.reversedDepth),this.projectionMatrixInverse.copy(this.projectionMatrix).invert()}toJSON(e){const t=super.toJSON(e);return t.object.zoom=this.zoom,t.object.left=this.left,t.object.right=this.right,t.object.top=this.top,t.object.bottom=this.bottom,t.object.near=this.near,t.object.far=this.far,this.view!==null&&(t.object.view=Object.assign({},this.view)),t}}const Br=-90,kr=1;class Cc extends nn{constructor(e,t,i){super(),this.type="CubeCamera",this.renderTarget=i,this.coordinateSystem=null,this.activeMipmapLevel=0;const r=new gn(Br,kr,e,t);r.layers=this.layers,this.add(r);const s=new gn(Br,kr,e,t);s.layers=this.layers,this.add(s);const a=new gn(Br,kr,e,t);a.layers=this.layers,this.add(a);const o=new gn(Br,kr,e,t);o.layers=this.layers,this.add(o);const l=new gn(Br,kr,e,t);l.layers=this.layers,this.add(l);const c=new gn(Br,kr,e,t);c.layers=this.layers,this.add(c)}updateCoordinateSystem(){const e=this.coordinateSystem,t=this.children.concat(),[i,r,s,a,o,l]=t;for(const c of t)this.remove(c);if(e===wn)i.up.set(0,1,0),i.lookAt(1,0,0),r.up.set(0,1,0),r.lookAt(-1,0,0),s.up.set(0,0,-1),s.lookAt(0,1,0),a.up.set(0,0,1),a.lookAt(0,-1,0),o.up.set(0,1,0),o.lookAt(0,0,1),l.up.set(0,1,0),l.lookAt(0,0,-1);else if(e===ya)i.up.set(0,-1,0),i.lookAt(-1,0,0),r.up.set(0,-1,0),r.lookAt(1,0,0),s.up.set(0,0,1),s.lookAt(0,1,0),a.up.set(0,0,-1),a.lookAt(0,-1,0),o.up.set(0,-1,0),o.lookAt(0,0,1),l.up.set(0,-1,0),l.lookAt(0,0,-1);else throw new Error("THREE.CubeCamera.updateCoordinateSystem(): Invalid coordinate system: "+e);for(const c of t)this.add(c),c.updateMatrixWorld()}update(e,t){this.parent===null&&this.updateMatrixWorld();const{renderTarget:i,activeMipmapLevel:r}=this;this.coordinateSystem!==e.coordinateSystem&&(this.coordinateSystem=e.coordinateSystem,this.updateCoordinateSystem());const[s,a,o,l,c,f]=this.children,d=e.getRenderTarget(),u=e.getActiveCubeFace(),h=e.getActiveMipmapLevel(),g=e.xr.enabled;e.xr.enabled=!1;const x=i.texture.mipmapsAutoUpdate;i.texture.mipmapsAutoUpdate=!1;let m=!1;e.isWebGLRenderer===!0?m=e.state.buffers.depth.getReversed():m=e.reversedDepthBuffer,e.setRenderTarget(i,0,r),m&&e.autoClear===!1&&e.clearDepth(),e.render(t,s),e.setRenderTarget(i,1,r),m&&e.autoClear===!1&&e.clearDepth(),e.render(t,a),e.setRenderTarget(i,2,r),m&&e.autoClear===!1&&e.clearDepth(),e.render(t,o),e.setRenderTarget(i,3,r),m&&e.autoClear===!1&&e.clearDepth(),e.render(t,l),e.setRenderTarget(i,4,r),m&&e.autoClear===!1&&e.clearDepth(),e.render(t,c),i.texture.mipmapsAutoUpdate=x,e.setRenderTarget(i,5,r),m&&e.autoClear===!1&&e.clearDepth(),e.render(t,f),e.setRenderTarget(d,u,h),e.xr.enabled=g,i.texture.needsPMREMUpdate=!0}}class Ag extends gn{constructor(e=[]){super(),this.isArrayCamera=!0,this.isMultiViewCamera=!1,this.cameras=e,this.perCameraFrustumCulled=!1}}const bd=new N,ja=new N,zr=new N,Hr=new N,Pc=new N,wg=new N,Rg=new N;class pi{constructor(e=new N,t=new N){this.start=e,this.end=t}set(e,t){return this.start.copy(e),this.end.copy(t),this}copy(e){return this.start.copy(e.start),this.end.copy(e.end),this}getCenter(e){return e.addVectors(this.start,this.end).multiplyScalar(.5)}delta(e){return e.subVectors(this.end,this.start)}distanceSq(){return this.start.distanceToSquared(this.end)}distance(){return this.start.distanceTo(this.end)}at(e,t){return this.delta(t).multiplyScalar(e).add(this.start)}closestPointToPointParameter(e,t){bd.subVectors(e,this.start),ja.subVectors(this.end,this.start);const i=ja.dot(ja);if(i===0)return 0;let s=ja.dot(bd)/i;return t&&(s=Oe(s,0,1)),s}closestPointToPoint(e,t,i){const r=this.closestPointToPointParameter(e,t);return this.delta(i).multiplyScalar(r).add(this.start)}distanceSqToLine3(e,t=wg,i=Rg){const r=10000000000000001e-32;let s,a;const o=this.start,l=e.start,c=this.end,f=e.end;zr.subVectors(c,o),Hr.subVectors(f,l),Pc.subVectors(o,l);const d=zr.dot(zr),u=Hr.dot(Hr),h=Hr.dot(Pc);if(d<=r&&u<=r)return t.copy(o),i.copy(l),t.distanceToSquared(i);if(d<=r)s=0,a=h/u,a=Oe(a,0,1);else{const g=zr.dot(Pc);if(u<=r)a=0,s=Oe(-g/d,0,1);else{const x=zr.dot(Hr),m=d*u-x*x;m!==0?s=Oe((x*h-g*u)/m,0,1):s=0,a=(x*s+h)/u,a<0?(a=0,s=Oe(-g/d,0,1)):a>1&&(a=1,s=Oe((x-g)/d,0,1))}}return t.copy(o).addScaledVector(zr,s),i.copy(l).addScaledVector(Hr,a),t.distanceToSquared(i)}applyMatrix4(e){return this.start.applyMatrix4(e),this.end.applyMatrix4(e),this}equals(e){return e.start.equals(this.start)&&e.end.equals(this.end)}clone(){return new this.constructor().copy(this)}}function Ed(n,e,t,i){const r=Cg(i);switch(t){case If:return n*e;case Uf:return n*e/r.components*r.byteLength;case Ml:return n*e/r.components*r.byteLength;case Zi:return n*e*2/r.components*r.byteLength;case yl:return n*e*2/r.components*r.byteLength;case Nf:return n*e*3/r.components*r.byteLength;case zn:return n*e*4/r.components*r.byteLength;case bl:return n*e*4/r.components*r.byteLength;case pa:case ma:return Math.floor((n+3)/4)*Math.floor((e+3)/4)*8;case ga:case _a:return Math.floor((n+3)/4)*Math.floor((e+3)/4)*16;case Tl:case wl:return Math.max(n,16)*Math.max(e,8)/4;case El:case Al:return Math.max(n,8)*Math.max(e,8)/2;case Rl:case Cl:case Ll:case Dl:return Math.floor((n+3)/4)*Math.floor((e+3)/4)*8;case Pl:case va:case Il:return Math.floor((n+3)/4)*Math.floor((e+3)/4)*16;case Nl:return Math.floor((n+3)/4)*Math.floor((e+3)/4)*16;case Ul:return Math.floor((n+4)/5)*Math.floor((e+3)/4)*16;case Fl:return Math.floor((n+4)/5)*Math.floor((e+4)/5)*16;case Ol:return Math.floor((n+5)/6)*Math.floor((e+4)/5)*16;case Bl:return Math.floor((n+5)/6)*Math.floor((e+5)/6)*16;case kl:return Math.floor((n+7)/8)*Math.floor((e+4)/5)*16;case zl:return Math.floor((n+7)/8)*Math.floor((e+5)/6)*16;case Hl:return Math.floor((n+7)/8)*Math.floor((e+7)/8)*16;case Gl:return Math.floor((n+9)/10)*Math.floor((e+4)/5)*16;case Vl:return Math.floor((n+9)/10)*Math.floor((e+5)/6)*16;case Wl:return Math.floor((n+9)/10)*Math.floor((e+7)/8)*16;case Xl:return Math.floor((n+9)/10)*Math.floor((e+9)/10)*16;case $l:return Math.floor((n+11)/12)*Math.floor((e+9)/10)*16;case ql:return Math.floor((n+11)/12)*Math.floor((e+11)/12)*16;case Yl:case Kl:case Zl:return Math.ceil(n/4)*Math.ceil(e/4)*16;case Jl:case Ql:return Math.ceil(n/4)*Math.ceil(e/4)*8;case xa:case jl:return Math.ceil(n/4)*Math.ceil(e/4)*16}throw new Error(`Unable to determine texture byte length for ${t} format.`)}function Cg(n){switch(n){case hn:case Cf:return{byteLength:1,components:1};case As:case Pf:case kn:return{byteLength:2,components:1};case xl:case Sl:return{byteLength:2,components:4};case On:case vl:case Bn:return{byteLength:4,components:1};case Lf:case Df:return{byteLength:4,components:3}}throw new Error(`THREE.TextureUtils: Unknown texture type ${n}.`)}typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("register",{detail:{revision:Ms}})),typeof window<"u"&&(window.__THREE__?Pe("WARNING: Multiple instances of Three.js being imported."):window.__THREE__=Ms);function Td(){let n=null,e=!1,t=null,i=null;function r(s,a){i=n.requestAnimationFrame(r),t(s,a)}return{start:function(){e!==!0&&t!==null&&n!==null&&(i=n.requestAnimationFrame(r),e=!0)},stop:function(){n!==null&&n.cancelAnimationFrame(i),e=!1},setAnimationLoop:function(s){t=s},setContext:function(s){n=s}}}function Pg(n){const e=new WeakMap;function t(o,l){const c=o.array,f=o.usage,d=c.byteLength,u=n.createBuffer();n.bindBuffer(l,u),n.bufferData(l,c,f),o.onUploadCallback();let h;if(c instanceof Float32Array)h=n.FLOAT;else if(typeof Float16Array<"u"&&c instanceof Float16Array)h=n.HALF_FLOAT;else if(c instanceof Uint16Array)o.isFloat16BufferAttribute?h=n.HALF_FLOAT:h=n.UNSIGNED_SHORT;else if(c instanceof Int16Array)h=n.SHORT;else if(c instanceof Uint32Array)h=n.UNSIGNED_INT;else if(c instanceof Int32Array)h=n.INT;else if(c instanceof Int8Array)h=n.BYTE;else if(c instanceof Uint8Array)h=n.UNSIGNED_BYTE;else if(c instanceof Uint8ClampedArray)h=n.UNSIGNED_BYTE;else throw new Error("THREE.WebGLAttributes: Unsupported buffer data format: "+c);return{buffer:u,type:h,bytesPerElement:c.BYTES_PER_ELEMENT,version:o.version,size:d}}function i(o,l,c){const f=l.array,d=l.updateRanges;if(n.bindBuffer(c,o),d.length===0)n.bufferSubData(c,0,f);else{d.sort((h,g)=>h.start-g.start);let u=0;for(let h=1;h<d.length;h++){const g=d[u],x=d[h];x.start<=g.start+g.count+1?g.count=Math.max(g.count,x.start+x.count-g.start):(++u,d[u]=x)}d.length=u+1;for(let h=0,g=d.length;h<g;h++){const x=d[h];n.bufferSubData(c,x.start*f.BYTES_PER_ELEMENT,f,x.start,x.count)}l.clearUpdateRanges()}l.onUploadCallback()}function r(o){return o.isInterleavedBufferAttribute&&(o=o.data),e.get(o)}function s(o){o.isInterleavedBufferAttribute&&(o=o.data);const l=e.get(o);l&&(n.deleteBuffer(l.buffer),e.delete(o))}function a(o,l){if(o.isInterleavedBufferAttribute&&(o=o.data),o.isGLBufferAttribute){const f=e.get(o);(!f||f.version<o.version)&&e.set(o,{buffer:o.buffer,type:o.type,bytesPerElement:o.elementSize,version:o.version});return}const c=e.get(o);if(c===void 0)e.set(o,t(o,l));else if(c.version<o.version){if(c.size!==o.array.byteLength)throw new Error("THREE.WebGLAttributes: The size of the buffer attribute's array buffer does not match the original size. Resizing buffer attributes is not supported.");i(c.buffer,o,l),c.version=o.version}}return{get:r,remove:s,update:a}}var Lg=`#ifdef USE_ALPHAHASH
+	if ( diffuseColor.a < getAlphaHashThreshold( vPosition ) ) discard;
+#endif`,Dg=`#ifdef USE_ALPHAHASH
+	const float ALPHA_HASH_SCALE = 0.05;
+	float hash2D( vec2 value ) {
+		return fract( 1.0e4 * sin( 17.0 * value.x + 0.1 * value.y ) * ( 0.1 + abs( sin( 13.0 * value.y + value.x ) ) ) );
+	}
+	float hash3D( vec3 value ) {
+		return hash2D( vec2( hash2D( value.xy ), value.z ) );
+	}
+	float getAlphaHashThreshold( vec3 position ) {
+		float maxDeriv = max(
+			length( dFdx( position.xyz ) ),
+			length( dFdy( position.xyz ) )
+		);
+		float pixScale = 1.0 / ( ALPHA_HASH_SCALE * maxDeriv );
+		vec2 pixScales = vec2(
+			exp2( floor( log2( pixScale ) ) ),
+			exp2( ceil( log2( pixScale ) ) )
+		);
+		vec2 alpha = vec2(
+			hash3D( floor( pixScales.x * position.xyz ) ),
+			hash3D( floor( pixScales.y * position.xyz ) )
+		);
+		float lerpFactor = fract( log2( pixScale ) );
+		float x = ( 1.0 - lerpFactor ) * alpha.x + lerpFactor * alpha.y;
+		float a = min( lerpFactor, 1.0 - lerpFactor );
+		vec3 cases = vec3(
+			x * x / ( 2.0 * a * ( 1.0 - a ) ),
+			( x - 0.5 * a ) / ( 1.0 - a ),
+			1.0 - ( ( 1.0 - x ) * ( 1.0 - x ) / ( 2.0 * a * ( 1.0 - a ) ) )
+		);
+		float threshold = ( x < ( 1.0 - a ) )
+			? ( ( x < a ) ? cases.x : cases.y )
+			: cases.z;
+		return clamp( threshold , 1.0e-6, 1.0 );
+	}
+#endif`,Ig=`#ifdef USE_ALPHAMAP
+	diffuseColor.a *= texture2D( alphaMap, vAlphaMapUv ).g;
+#endif`,Ng=`#ifdef USE_ALPHAMAP
+	uniform sampler2D alphaMap;
+#endif`,Ug=`#ifdef USE_ALPHATEST
+	#ifdef ALPHA_TO_COVERAGE
+	diffuseColor.a = smoothstep( alphaTest, alphaTest + fwidth( diffuseColor.a ), diffuseColor.a );
+	if ( diffuseColor.a == 0.0 ) discard;
+	#else
+	if ( diffuseColor.a < alphaTest ) discard;
+	#endif
+#endif`,Fg=`#ifdef USE_ALPHATEST
+	uniform float alphaTest;
+#endif`,Og=`#ifdef USE_AOMAP
+	float ambientOcclusion = ( texture2D( aoMap, vAoMapUv ).r - 1.0 ) * aoMapIntensity + 1.0;
+	reflectedLight.indirectDiffuse *= ambientOcclusion;
+	#if defined( USE_CLEARCOAT ) 
+		clearcoatSpecularIndirect *= ambientOcclusion;
+	#endif
+	#if defined( USE_SHEEN ) 
+		sheenSpecularIndirect *= ambientOcclusion;
+	#endif
+	#if defined( USE_ENVMAP ) && defined( STANDARD )
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		reflectedLight.indirectSpecular *= computeSpecularOcclusion( dotNV, ambientOcclusion, material.roughness );
+	#endif
+#endif`,Bg=`#ifdef USE_AOMAP
+	uniform sampler2D aoMap;
+	uniform float aoMapIntensity;
+#endif`,kg=`#ifdef USE_BATCHING
+	#if ! defined( GL_ANGLE_multi_draw )
+	#define gl_DrawID _gl_DrawID
+	uniform int _gl_DrawID;
+	#endif
+	uniform highp sampler2D batchingTexture;
+	uniform highp usampler2D batchingIdTexture;
+	mat4 getBatchingMatrix( const in float i ) {
+		int size = textureSize( batchingTexture, 0 ).x;
+		int j = int( i ) * 4;
+		int x = j % size;
+		int y = j / size;
+		vec4 v1 = texelFetch( batchingTexture, ivec2( x, y ), 0 );
+		vec4 v2 = texelFetch( batchingTexture, ivec2( x + 1, y ), 0 );
+		vec4 v3 = texelFetch( batchingTexture, ivec2( x + 2, y ), 0 );
+		vec4 v4 = texelFetch( batchingTexture, ivec2( x + 3, y ), 0 );
+		return mat4( v1, v2, v3, v4 );
+	}
+	float getIndirectIndex( const in int i ) {
+		int size = textureSize( batchingIdTexture, 0 ).x;
+		int x = i % size;
+		int y = i / size;
+		return float( texelFetch( batchingIdTexture, ivec2( x, y ), 0 ).r );
+	}
+#endif
+#ifdef USE_BATCHING_COLOR
+	uniform sampler2D batchingColorTexture;
+	vec4 getBatchingColor( const in float i ) {
+		int size = textureSize( batchingColorTexture, 0 ).x;
+		int j = int( i );
+		int x = j % size;
+		int y = j / size;
+		return texelFetch( batchingColorTexture, ivec2( x, y ), 0 );
+	}
+#endif`,zg=`#ifdef USE_BATCHING
+	mat4 batchingMatrix = getBatchingMatrix( getIndirectIndex( gl_DrawID ) );
+#endif`,Hg=`vec3 transformed = vec3( position );
+#ifdef USE_ALPHAHASH
+	vPosition = vec3( position );
+#endif`,Gg=`vec3 objectNormal = vec3( normal );
+#ifdef USE_TANGENT
+	vec3 objectTangent = vec3( tangent.xyz );
+#endif`,Vg=`float G_BlinnPhong_Implicit( ) {
+	return 0.25;
+}
+float D_BlinnPhong( const in float shininess, const in float dotNH ) {
+	return RECIPROCAL_PI * ( shininess * 0.5 + 1.0 ) * pow( dotNH, shininess );
+}
+vec3 BRDF_BlinnPhong( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in vec3 specularColor, const in float shininess ) {
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float dotVH = saturate( dot( viewDir, halfDir ) );
+	vec3 F = F_Schlick( specularColor, 1.0, dotVH );
+	float G = G_BlinnPhong_Implicit( );
+	float D = D_BlinnPhong( shininess, dotNH );
+	return F * ( G * D );
+} // validated`,Wg=`#ifdef USE_IRIDESCENCE
+	const mat3 XYZ_TO_REC709 = mat3(
+		 3.2404542, -0.9692660,  0.0556434,
+		-1.5371385,  1.8760108, -0.2040259,
+		-0.4985314,  0.0415560,  1.0572252
+	);
+	vec3 Fresnel0ToIor( vec3 fresnel0 ) {
+		vec3 sqrtF0 = sqrt( fresnel0 );
+		return ( vec3( 1.0 ) + sqrtF0 ) / ( vec3( 1.0 ) - sqrtF0 );
+	}
+	vec3 IorToFresnel0( vec3 transmittedIor, float incidentIor ) {
+		return pow2( ( transmittedIor - vec3( incidentIor ) ) / ( transmittedIor + vec3( incidentIor ) ) );
+	}
+	float IorToFresnel0( float transmittedIor, float incidentIor ) {
+		return pow2( ( transmittedIor - incidentIor ) / ( transmittedIor + incidentIor ));
+	}
+	vec3 evalSensitivity( float OPD, vec3 shift ) {
+		float phase = 2.0 * PI * OPD * 1.0e-9;
+		vec3 val = vec3( 5.4856e-13, 4.4201e-13, 5.2481e-13 );
+		vec3 pos = vec3( 1.6810e+06, 1.7953e+06, 2.2084e+06 );
+		vec3 var = vec3( 4.3278e+09, 9.3046e+09, 6.6121e+09 );
+		vec3 xyz = val * sqrt( 2.0 * PI * var ) * cos( pos * phase + shift ) * exp( - pow2( phase ) * var );
+		xyz.x += 9.7470e-14 * sqrt( 2.0 * PI * 4.5282e+09 ) * cos( 2.2399e+06 * phase + shift[ 0 ] ) * exp( - 4.5282e+09 * pow2( phase ) );
+		xyz /= 1.0685e-7;
+		vec3 rgb = XYZ_TO_REC709 * xyz;
+		return rgb;
+	}
+	vec3 evalIridescence( float outsideIOR, float eta2, float cosTheta1, float thinFilmThickness, vec3 baseF0 ) {
+		vec3 I;
+		float iridescenceIOR = mix( outsideIOR, eta2, smoothstep( 0.0, 0.03, thinFilmThickness ) );
+		float sinTheta2Sq = pow2( outsideIOR / iridescenceIOR ) * ( 1.0 - pow2( cosTheta1 ) );
+		float cosTheta2Sq = 1.0 - sinTheta2Sq;
+		if ( cosTheta2Sq < 0.0 ) {
+			return vec3( 1.0 );
+		}
+		float cosTheta2 = sqrt( cosTheta2Sq );
+		float R0 = IorToFresnel0( iridescenceIOR, outsideIOR );
+		float R12 = F_Schlick( R0, 1.0, cosTheta1 );
+		float T121 = 1.0 - R12;
+		float phi12 = 0.0;
+		if ( iridescenceIOR < outsideIOR ) phi12 = PI;
+		float phi21 = PI - phi12;
+		vec3 baseIOR = Fresnel0ToIor( clamp( baseF0, 0.0, 0.9999 ) );		vec3 R1 = IorToFresnel0( baseIOR, iridescenceIOR );
+		vec3 R23 = F_Schlick( R1, 1.0, cosTheta2 );
+		vec3 phi23 = vec3( 0.0 );
+		if ( baseIOR[ 0 ] < iridescenceIOR ) phi23[ 0 ] = PI;
+		if ( baseIOR[ 1 ] < iridescenceIOR ) phi23[ 1 ] = PI;
+		if ( baseIOR[ 2 ] < iridescenceIOR ) phi23[ 2 ] = PI;
+		float OPD = 2.0 * iridescenceIOR * thinFilmThickness * cosTheta2;
+		vec3 phi = vec3( phi21 ) + phi23;
+		vec3 R123 = clamp( R12 * R23, 1e-5, 0.9999 );
+		vec3 r123 = sqrt( R123 );
+		vec3 Rs = pow2( T121 ) * R23 / ( vec3( 1.0 ) - R123 );
+		vec3 C0 = R12 + Rs;
+		I = C0;
+		vec3 Cm = Rs - T121;
+		for ( int m = 1; m <= 2; ++ m ) {
+			Cm *= r123;
+			vec3 Sm = 2.0 * evalSensitivity( float( m ) * OPD, float( m ) * phi );
+			I += Cm * Sm;
+		}
+		return max( I, vec3( 0.0 ) );
+	}
+#endif`,Xg=`#ifdef USE_BUMPMAP
+	uniform sampler2D bumpMap;
+	uniform float bumpScale;
+	vec2 dHdxy_fwd() {
+		vec2 dSTdx = dFdx( vBumpMapUv );
+		vec2 dSTdy = dFdy( vBumpMapUv );
+		float Hll = bumpScale * texture2D( bumpMap, vBumpMapUv ).x;
+		float dBx = bumpScale * texture2D( bumpMap, vBumpMapUv + dSTdx ).x - Hll;
+		float dBy = bumpScale * texture2D( bumpMap, vBumpMapUv + dSTdy ).x - Hll;
+		return vec2( dBx, dBy );
+	}
+	vec3 perturbNormalArb( vec3 surf_pos, vec3 surf_norm, vec2 dHdxy, float faceDirection ) {
+		vec3 vSigmaX = normalize( dFdx( surf_pos.xyz ) );
+		vec3 vSigmaY = normalize( dFdy( surf_pos.xyz ) );
+		vec3 vN = surf_norm;
+		vec3 R1 = cross( vSigmaY, vN );
+		vec3 R2 = cross( vN, vSigmaX );
+		float fDet = dot( vSigmaX, R1 ) * faceDirection;
+		vec3 vGrad = sign( fDet ) * ( dHdxy.x * R1 + dHdxy.y * R2 );
+		return normalize( abs( fDet ) * surf_norm - vGrad );
+	}
+#endif`,$g=`#if NUM_CLIPPING_PLANES > 0
+	vec4 plane;
+	#ifdef ALPHA_TO_COVERAGE
+		float distanceToPlane, distanceGradient;
+		float clipOpacity = 1.0;
+		#pragma unroll_loop_start
+		for ( int i = 0; i < UNION_CLIPPING_PLANES; i ++ ) {
+			plane = clippingPlanes[ i ];
+			distanceToPlane = - dot( vClipPosition, plane.xyz ) + plane.w;
+			distanceGradient = fwidth( distanceToPlane ) / 2.0;
+			clipOpacity *= smoothstep( - distanceGradient, distanceGradient, distanceToPlane );
+			if ( clipOpacity == 0.0 ) discard;
+		}
+		#pragma unroll_loop_end
+		#if UNION_CLIPPING_PLANES < NUM_CLIPPING_PLANES
+			float unionClipOpacity = 1.0;
+			#pragma unroll_loop_start
+			for ( int i = UNION_CLIPPING_PLANES; i < NUM_CLIPPING_PLANES; i ++ ) {
+				plane = clippingPlanes[ i ];
+				distanceToPlane = - dot( vClipPosition, plane.xyz ) + plane.w;
+				distanceGradient = fwidth( distanceToPlane ) / 2.0;
+				unionClipOpacity *= 1.0 - smoothstep( - distanceGradient, distanceGradient, distanceToPlane );
+			}
+			#pragma unroll_loop_end
+			clipOpacity *= 1.0 - unionClipOpacity;
+		#endif
+		diffuseColor.a *= clipOpacity;
+		if ( diffuseColor.a == 0.0 ) discard;
+	#else
+		#pragma unroll_loop_start
+		for ( int i = 0; i < UNION_CLIPPING_PLANES; i ++ ) {
+			plane = clippingPlanes[ i ];
+			if ( dot( vClipPosition, plane.xyz ) > plane.w ) discard;
+		}
+		#pragma unroll_loop_end
+		#if UNION_CLIPPING_PLANES < NUM_CLIPPING_PLANES
+			bool clipped = true;
+			#pragma unroll_loop_start
+			for ( int i = UNION_CLIPPING_PLANES; i < NUM_CLIPPING_PLANES; i ++ ) {
+				plane = clippingPlanes[ i ];
+				clipped = ( dot( vClipPosition, plane.xyz ) > plane.w ) && clipped;
+			}
+			#pragma unroll_loop_end
+			if ( clipped ) discard;
+		#endif
+	#endif
+#endif`,qg=`#if NUM_CLIPPING_PLANES > 0
+	varying vec3 vClipPosition;
+	uniform vec4 clippingPlanes[ NUM_CLIPPING_PLANES ];
+#endif`,Yg=`#if NUM_CLIPPING_PLANES > 0
+	varying vec3 vClipPosition;
+#endif`,Kg=`#if NUM_CLIPPING_PLANES > 0
+	vClipPosition = - mvPosition.xyz;
+#endif`,Zg=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA )
+	diffuseColor *= vColor;
+#endif`,Jg=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA )
+	varying vec4 vColor;
+#endif`,Qg=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA ) || defined( USE_INSTANCING_COLOR ) || defined( USE_BATCHING_COLOR )
+	varying vec4 vColor;
+#endif`,jg=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA ) || defined( USE_INSTANCING_COLOR ) || defined( USE_BATCHING_COLOR )
+	vColor = vec4( 1.0 );
+#endif
+#ifdef USE_COLOR_ALPHA
+	vColor *= color;
+#elif defined( USE_COLOR )
+	vColor.rgb *= color;
+#endif
+#ifdef USE_INSTANCING_COLOR
+	vColor.rgb *= instanceColor.rgb;
+#endif
+#ifdef USE_BATCHING_COLOR
+	vColor *= getBatchingColor( getIndirectIndex( gl_DrawID ) );
+#endif`,e_=`#define PI 3.141592653589793
+#define PI2 6.283185307179586
+#define PI_HALF 1.5707963267948966
+#define RECIPROCAL_PI 0.3183098861837907
+#define RECIPROCAL_PI2 0.15915494309189535
+#define EPSILON 1e-6
+#ifndef saturate
+#define saturate( a ) clamp( a, 0.0, 1.0 )
+#endif
+#define whiteComplement( a ) ( 1.0 - saturate( a ) )
+float pow2( const in float x ) { return x*x; }
+vec3 pow2( const in vec3 x ) { return x*x; }
+float pow3( const in float x ) { return x*x*x; }
+float pow4( const in float x ) { float x2 = x*x; return x2*x2; }
+float max3( const in vec3 v ) { return max( max( v.x, v.y ), v.z ); }
+float average( const in vec3 v ) { return dot( v, vec3( 0.3333333 ) ); }
+highp float rand( const in vec2 uv ) {
+	const highp float a = 12.9898, b = 78.233, c = 43758.5453;
+	highp float dt = dot( uv.xy, vec2( a,b ) ), sn = mod( dt, PI );
+	return fract( sin( sn ) * c );
+}
+#ifdef HIGH_PRECISION
+	float precisionSafeLength( vec3 v ) { return length( v ); }
+#else
+	float precisionSafeLength( vec3 v ) {
+		float maxComponent = max3( abs( v ) );
+		return length( v / maxComponent ) * maxComponent;
+	}
+#endif
+struct IncidentLight {
+	vec3 color;
+	vec3 direction;
+	bool visible;
+};
+struct ReflectedLight {
+	vec3 directDiffuse;
+	vec3 directSpecular;
+	vec3 indirectDiffuse;
+	vec3 indirectSpecular;
+};
+#ifdef USE_ALPHAHASH
+	varying vec3 vPosition;
+#endif
+vec3 transformDirection( in vec3 dir, in mat4 matrix ) {
+	return normalize( ( matrix * vec4( dir, 0.0 ) ).xyz );
+}
+#define inverseTransformDirection transformDirectionByInverseViewMatrix
+vec3 transformNormalByInverseViewMatrix( in vec3 normal, in mat4 viewMatrix ) {
+	return normalize( ( vec4( normal, 0.0 ) * viewMatrix ).xyz );
+}
+vec3 transformDirectionByInverseViewMatrix( in vec3 dir, in mat4 viewMatrix ) {
+	return normalize( ( vec4( dir, 0.0 ) * viewMatrix ).xyz );
+}
+bool isPerspectiveMatrix( mat4 m ) {
+	return m[ 2 ][ 3 ] == - 1.0;
+}
+vec2 equirectUv( in vec3 dir ) {
+	float u = atan( dir.z, dir.x ) * RECIPROCAL_PI2 + 0.5;
+	float v = asin( clamp( dir.y, - 1.0, 1.0 ) ) * RECIPROCAL_PI + 0.5;
+	return vec2( u, v );
+}
+vec3 BRDF_Lambert( const in vec3 diffuseColor ) {
+	return RECIPROCAL_PI * diffuseColor;
+}
+vec3 F_Schlick( const in vec3 f0, const in float f90, const in float dotVH ) {
+	float fresnel = exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH );
+	return f0 * ( 1.0 - fresnel ) + ( f90 * fresnel );
+}
+float F_Schlick( const in float f0, const in float f90, const in float dotVH ) {
+	float fresnel = exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH );
+	return f0 * ( 1.0 - fresnel ) + ( f90 * fresnel );
+} // validated`,t_=`vec3 transformedNormal = objectNormal;
+#ifdef USE_TANGENT
+	vec3 transformedTangent = objectTangent;
+#endif
+#ifdef USE_BATCHING
+	mat3 bm = mat3( batchingMatrix );
+	transformedNormal /= vec3( dot( bm[ 0 ], bm[ 0 ] ), dot( bm[ 1 ], bm[ 1 ] ), dot( bm[ 2 ], bm[ 2 ] ) );
+	transformedNormal = bm * transformedNormal;
+	#ifdef USE_TANGENT
+		transformedTangent = bm * transformedTangent;
+	#endif
+#endif
+#ifdef USE_INSTANCING
+	mat3 im = mat3( instanceMatrix );
+	transformedNormal /= vec3( dot( im[ 0 ], im[ 0 ] ), dot( im[ 1 ], im[ 1 ] ), dot( im[ 2 ], im[ 2 ] ) );
+	transformedNormal = im * transformedNormal;
+	#ifdef USE_TANGENT
+		transformedTangent = im * transformedTangent;
+	#endif
+#endif
+transformedNormal = normalMatrix * transformedNormal;
+#ifdef FLIP_SIDED
+	transformedNormal = - transformedNormal;
+#endif
+#ifdef USE_TANGENT
+	transformedTangent = ( modelViewMatrix * vec4( transformedTangent, 0.0 ) ).xyz;
+#endif`,n_=`#ifdef USE_DISPLACEMENTMAP
+	uniform sampler2D displacementMap;
+	uniform float displacementScale;
+	uniform float displacementBias;
+#endif`,i_=`#ifdef USE_DISPLACEMENTMAP
+	transformed += normalize( objectNormal ) * ( texture2D( displacementMap, vDisplacementMapUv ).x * displacementScale + displacementBias );
+#endif`,r_=`#ifdef USE_EMISSIVEMAP
+	vec4 emissiveColor = texture2D( emissiveMap, vEmissiveMapUv );
+	#ifdef DECODE_VIDEO_TEXTURE_EMISSIVE
+		emissiveColor = sRGBTransferEOTF( emissiveColor );
+	#endif
+	totalEmissiveRadiance *= emissiveColor.rgb;
+#endif`,s_=`#ifdef USE_EMISSIVEMAP
+	uniform sampler2D emissiveMap;
+#endif`,a_="gl_FragColor = linearToOutputTexel( gl_FragColor );",o_=`vec4 LinearTransferOETF( in vec4 value ) {
+	return value;
+}
+vec4 sRGBTransferEOTF( in vec4 value ) {
+	return vec4( mix( pow( value.rgb * 0.9478672986 + vec3( 0.0521327014 ), vec3( 2.4 ) ), value.rgb * 0.0773993808, vec3( lessThanEqual( value.rgb, vec3( 0.04045 ) ) ) ), value.a );
+}
+vec4 sRGBTransferOETF( in vec4 value ) {
+	return vec4( mix( pow( value.rgb, vec3( 0.41666 ) ) * 1.055 - vec3( 0.055 ), value.rgb * 12.92, vec3( lessThanEqual( value.rgb, vec3( 0.0031308 ) ) ) ), value.a );
+}`,l_=`#ifdef USE_ENVMAP
+	#ifdef ENV_WORLDPOS
+		vec3 cameraToFrag;
+		if ( isOrthographic ) {
+			cameraToFrag = normalize( vec3( - viewMatrix[ 0 ][ 2 ], - viewMatrix[ 1 ][ 2 ], - viewMatrix[ 2 ][ 2 ] ) );
+		} else {
+			cameraToFrag = normalize( vWorldPosition - cameraPosition );
+		}
+		vec3 worldNormal = transformNormalByInverseViewMatrix( normal, viewMatrix );
+		#ifdef ENVMAP_MODE_REFLECTION
+			vec3 reflectVec = reflect( cameraToFrag, worldNormal );
+		#else
+			vec3 reflectVec = refract( cameraToFrag, worldNormal, refractionRatio );
+		#endif
+	#else
+		vec3 reflectVec = vReflect;
+	#endif
+	#ifdef ENVMAP_TYPE_CUBE
+		vec4 envColor = textureCube( envMap, envMapRotation * reflectVec );
+		#ifdef ENVMAP_BLENDING_MULTIPLY
+			outgoingLight = mix( outgoingLight, outgoingLight * envColor.xyz, specularStrength * reflectivity );
+		#elif defined( ENVMAP_BLENDING_MIX )
+			outgoingLight = mix( outgoingLight, envColor.xyz, specularStrength * reflectivity );
+		#elif defined( ENVMAP_BLENDING_ADD )
+			outgoingLight += envColor.xyz * specularStrength * reflectivity;
+		#endif
+	#endif
+#endif`,c_=`#ifdef USE_ENVMAP
+	uniform float envMapIntensity;
+	uniform mat3 envMapRotation;
+	uniform samplerCube envMap;
+	#ifdef ENVMAP_TYPE_PMREM
+		float roughnessToMip( const in float roughness ) {
+			float r = clamp( roughness, 0.0, 1.0 );
+			return ENVMAP_MAX_LOD * r * ( 2.0 - r );
+		}
+	#endif
+#endif`,u_=`#ifdef USE_ENVMAP
+	uniform float reflectivity;
+	#if defined( USE_BUMPMAP ) || defined( USE_NORMALMAP ) || defined( PHONG ) || defined( LAMBERT )
+		#define ENV_WORLDPOS
+	#endif
+	#ifdef ENV_WORLDPOS
+		varying vec3 vWorldPosition;
+		uniform float refractionRatio;
+	#else
+		varying vec3 vReflect;
+	#endif
+#endif`,f_=`#ifdef USE_ENVMAP
+	#if defined( USE_BUMPMAP ) || defined( USE_NORMALMAP ) || defined( PHONG ) || defined( LAMBERT )
+		#define ENV_WORLDPOS
+	#endif
+	#ifdef ENV_WORLDPOS
+		
+		varying vec3 vWorldPosition;
+	#else
+		varying vec3 vReflect;
+		uniform float refractionRatio;
+	#endif
+#endif`,d_=`#ifdef USE_ENVMAP
+	#ifdef ENV_WORLDPOS
+		vWorldPosition = worldPosition.xyz;
+	#else
+		vec3 cameraToVertex;
+		if ( isOrthographic ) {
+			cameraToVertex = normalize( vec3( - viewMatrix[ 0 ][ 2 ], - viewMatrix[ 1 ][ 2 ], - viewMatrix[ 2 ][ 2 ] ) );
+		} else {
+			cameraToVertex = normalize( worldPosition.xyz - cameraPosition );
+		}
+		vec3 worldNormal = transformNormalByInverseViewMatrix( transformedNormal, viewMatrix );
+		#ifdef ENVMAP_MODE_REFLECTION
+			vReflect = reflect( cameraToVertex, worldNormal );
+		#else
+			vReflect = refract( cameraToVertex, worldNormal, refractionRatio );
+		#endif
+	#endif
+#endif`,h_=`#ifdef USE_FOG
+	vFogDepth = - mvPosition.z;
+#endif`,p_=`#ifdef USE_FOG
+	varying float vFogDepth;
+#endif`,m_=`#ifdef USE_FOG
+	#ifdef FOG_EXP2
+		float fogFactor = 1.0 - exp( - fogDensity * fogDensity * vFogDepth * vFogDepth );
+	#else
+		float fogFactor = smoothstep( fogNear, fogFar, vFogDepth );
+	#endif
+	gl_FragColor.rgb = mix( gl_FragColor.rgb, fogColor, fogFactor );
+#endif`,g_=`#ifdef USE_FOG
+	uniform vec3 fogColor;
+	varying float vFogDepth;
+	#ifdef FOG_EXP2
+		uniform float fogDensity;
+	#else
+		uniform float fogNear;
+		uniform float fogFar;
+	#endif
+#endif`,__=`#ifdef USE_GRADIENTMAP
+	uniform sampler2D gradientMap;
+#endif
+vec3 getGradientIrradiance( vec3 normal, vec3 lightDirection ) {
+	float dotNL = dot( normal, lightDirection );
+	vec2 coord = vec2( dotNL * 0.5 + 0.5, 0.0 );
+	#ifdef USE_GRADIENTMAP
+		return vec3( texture2D( gradientMap, coord ).r );
+	#else
+		vec2 fw = fwidth( coord ) * 0.5;
+		return mix( vec3( 0.7 ), vec3( 1.0 ), smoothstep( 0.7 - fw.x, 0.7 + fw.x, coord.x ) );
+	#endif
+}`,v_=`#ifdef USE_LIGHTMAP
+	uniform sampler2D lightMap;
+	uniform float lightMapIntensity;
+#endif`,x_=`LambertMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.specularStrength = specularStrength;`,S_=`varying vec3 vViewPosition;
+struct LambertMaterial {
+	vec3 diffuseColor;
+	float specularStrength;
+};
+void RE_Direct_Lambert( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in LambertMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Lambert( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in LambertMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_Lambert
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Lambert`,M_=`uniform bool receiveShadow;
+uniform vec3 ambientLightColor;
+#if defined( USE_LIGHT_PROBES )
+	uniform vec3 lightProbe[ 9 ];
+#endif
+vec3 shGetIrradianceAt( in vec3 normal, in vec3 shCoefficients[ 9 ] ) {
+	float x = normal.x, y = normal.y, z = normal.z;
+	vec3 result = shCoefficients[ 0 ] * 0.886227;
+	result += shCoefficients[ 1 ] * 2.0 * 0.511664 * y;
+	result += shCoefficients[ 2 ] * 2.0 * 0.511664 * z;
+	result += shCoefficients[ 3 ] * 2.0 * 0.511664 * x;
+	result += shCoefficients[ 4 ] * 2.0 * 0.429043 * x * y;
+	result += shCoefficients[ 5 ] * 2.0 * 0.429043 * y * z;
+	result += shCoefficients[ 6 ] * ( 0.743125 * z * z - 0.247708 );
+	result += shCoefficients[ 7 ] * 2.0 * 0.429043 * x * z;
+	result += shCoefficients[ 8 ] * 0.429043 * ( x * x - y * y );
+	return result;
+}
+vec3 getLightProbeIrradiance( const in vec3 lightProbe[ 9 ], const in vec3 normal ) {
+	vec3 worldNormal = transformNormalByInverseViewMatrix( normal, viewMatrix );
+	vec3 irradiance = shGetIrradianceAt( worldNormal, lightProbe );
+	return irradiance;
+}
+vec3 getAmbientLightIrradiance( const in vec3 ambientLightColor ) {
+	vec3 irradiance = ambientLightColor;
+	return irradiance;
+}
+float getDistanceAttenuation( const in float lightDistance, const in float cutoffDistance, const in float decayExponent ) {
+	float distanceFalloff = 1.0 / max( pow( lightDistance, decayExponent ), 0.01 );
+	if ( cutoffDistance > 0.0 ) {
+		distanceFalloff *= pow2( saturate( 1.0 - pow4( lightDistance / cutoffDistance ) ) );
+	}
+	return distanceFalloff;
+}
+float getSpotAttenuation( const in float coneCosine, const in float penumbraCosine, const in float angleCosine ) {
+	return smoothstep( coneCosine, penumbraCosine, angleCosine );
+}
+#if NUM_SUN_LIGHTS > 0
+	struct SunLight {
+		vec3 direction;
+		vec3 color;
+	};
+	uniform SunLight sunLights[ NUM_SUN_LIGHTS ];
+	void getSunLightInfo( const in SunLight sunLight, out IncidentLight light ) {
+		light.color = sunLight.color;
+		light.direction = sunLight.direction;
+		light.visible = true;
+	}
+#endif
+#if NUM_DIR_LIGHTS > 0
+	struct DirectionalLight {
+		vec3 direction;
+		vec3 color;
+	};
+	uniform DirectionalLight directionalLights[ NUM_DIR_LIGHTS ];
+	void getDirectionalLightInfo( const in DirectionalLight directionalLight, out IncidentLight light ) {
+		light.color = directionalLight.color;
+		light.direction = directionalLight.direction;
+		light.visible = true;
+	}
+#endif
+#if NUM_POINT_LIGHTS > 0
+	struct PointLight {
+		vec3 position;
+		vec3 color;
+		float distance;
+		float decay;
+	};
+	uniform PointLight pointLights[ NUM_POINT_LIGHTS ];
+	void getPointLightInfo( const in PointLight pointLight, const in vec3 geometryPosition, out IncidentLight light ) {
+		vec3 lVector = pointLight.position - geometryPosition;
+		light.direction = normalize( lVector );
+		float lightDistance = length( lVector );
+		light.color = pointLight.color;
+		light.color *= getDistanceAttenuation( lightDistance, pointLight.distance, pointLight.decay );
+		light.visible = ( light.color != vec3( 0.0 ) );
+	}
+#endif
+#if NUM_SPOT_LIGHTS > 0
+	struct SpotLight {
+		vec3 position;
+		vec3 direction;
+		vec3 color;
+		float distance;
+		float decay;
+		float coneCos;
+		float penumbraCos;
+	};
+	uniform SpotLight spotLights[ NUM_SPOT_LIGHTS ];
+	void getSpotLightInfo( const in SpotLight spotLight, const in vec3 geometryPosition, out IncidentLight light ) {
+		vec3 lVector = spotLight.position - geometryPosition;
+		light.direction = normalize( lVector );
+		float angleCos = dot( light.direction, spotLight.direction );
+		float spotAttenuation = getSpotAttenuation( spotLight.coneCos, spotLight.penumbraCos, angleCos );
+		if ( spotAttenuation > 0.0 ) {
+			float lightDistance = length( lVector );
+			light.color = spotLight.color * spotAttenuation;
+			light.color *= getDistanceAttenuation( lightDistance, spotLight.distance, spotLight.decay );
+			light.visible = ( light.color != vec3( 0.0 ) );
+		} else {
+			light.color = vec3( 0.0 );
+			light.visible = false;
+		}
+	}
+#endif
+#if NUM_RECT_AREA_LIGHTS > 0
+	struct RectAreaLight {
+		vec3 color;
+		vec3 position;
+		vec3 halfWidth;
+		vec3 halfHeight;
+	};
+	uniform sampler2D ltc_1;	uniform sampler2D ltc_2;
+	uniform RectAreaLight rectAreaLights[ NUM_RECT_AREA_LIGHTS ];
+#endif
+#if NUM_HEMI_LIGHTS > 0
+	struct HemisphereLight {
+		vec3 direction;
+		vec3 skyColor;
+		vec3 groundColor;
+	};
+	uniform HemisphereLight hemisphereLights[ NUM_HEMI_LIGHTS ];
+	vec3 getHemisphereLightIrradiance( const in HemisphereLight hemiLight, const in vec3 normal ) {
+		float dotNL = dot( normal, hemiLight.direction );
+		float hemiDiffuseWeight = 0.5 * dotNL + 0.5;
+		vec3 irradiance = mix( hemiLight.groundColor, hemiLight.skyColor, hemiDiffuseWeight );
+		return irradiance;
+	}
+#endif
+#include <lightprobes_pars_fragment>`,y_=`#ifdef USE_ENVMAP
+	vec3 getIBLIrradiance( const in vec3 normal ) {
+		#ifdef ENVMAP_TYPE_PMREM
+			vec3 worldNormal = transformNormalByInverseViewMatrix( normal, viewMatrix );
+			vec4 envMapColor = textureLod( envMap, envMapRotation * worldNormal, ENVMAP_MAX_LOD );
+			return PI * envMapColor.rgb * envMapIntensity;
+		#else
+			return vec3( 0.0 );
+		#endif
+	}
+	vec3 getIBLRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness ) {
+		#ifdef ENVMAP_TYPE_PMREM
+			vec3 reflectVec = reflect( - viewDir, normal );
+			reflectVec = normalize( mix( reflectVec, normal, pow4( roughness ) ) );
+			reflectVec = transformDirectionByInverseViewMatrix( reflectVec, viewMatrix );
+			vec4 envMapColor = textureLod( envMap, envMapRotation * reflectVec, roughnessToMip( roughness ) );
+			return envMapColor.rgb * envMapIntensity;
+		#else
+			return vec3( 0.0 );
+		#endif
+	}
+	#ifdef USE_RETROREFLECTION
+		vec3 getIBLRetroRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness ) {
+			#ifdef ENVMAP_TYPE_PMREM
+				vec3 retroVec = normalize( mix( viewDir, normal, pow4( roughness ) ) );
+				retroVec = transformDirectionByInverseViewMatrix( retroVec, viewMatrix );
+				vec4 envMapColor = textureLod( envMap, envMapRotation * retroVec, roughnessToMip( roughness ) );
+				return envMapColor.rgb * envMapIntensity;
+			#else
+				return vec3( 0.0 );
+			#endif
+		}
+	#endif
+	#ifdef USE_ANISOTROPY
+		vec3 getIBLAnisotropyRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness, const in vec3 bitangent, const in float anisotropy ) {
+			#ifdef ENVMAP_TYPE_PMREM
+				vec3 bentNormal = cross( bitangent, viewDir );
+				bentNormal = normalize( cross( bentNormal, bitangent ) );
+				bentNormal = normalize( mix( bentNormal, normal, pow2( pow2( 1.0 - anisotropy * ( 1.0 - roughness ) ) ) ) );
+				return getIBLRadiance( viewDir, bentNormal, roughness );
+			#else
+				return vec3( 0.0 );
+			#endif
+		}
+		#ifdef USE_RETROREFLECTION
+			vec3 getIBLAnisotropyRetroRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness, const in vec3 bitangent, const in float anisotropy ) {
+				#ifdef ENVMAP_TYPE_PMREM
+					vec3 bentNormal = cross( bitangent, viewDir );
+					bentNormal = normalize( cross( bentNormal, bitangent ) );
+					bentNormal = normalize( mix( bentNormal, normal, pow2( pow2( 1.0 - anisotropy * ( 1.0 - roughness ) ) ) ) );
+					return getIBLRetroRadiance( viewDir, bentNormal, roughness );
+				#else
+					return vec3( 0.0 );
+				#endif
+			}
+		#endif
+	#endif
+#endif`,b_=`ToonMaterial material;
+material.diffuseColor = diffuseColor.rgb;`,E_=`varying vec3 vViewPosition;
+struct ToonMaterial {
+	vec3 diffuseColor;
+};
+void RE_Direct_Toon( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in ToonMaterial material, inout ReflectedLight reflectedLight ) {
+	vec3 irradiance = getGradientIrradiance( geometryNormal, directLight.direction ) * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Toon( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in ToonMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_Toon
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Toon`,T_=`BlinnPhongMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.specularColor = specular;
+material.specularShininess = shininess;
+material.specularStrength = specularStrength;`,A_=`varying vec3 vViewPosition;
+struct BlinnPhongMaterial {
+	vec3 diffuseColor;
+	vec3 specularColor;
+	float specularShininess;
+	float specularStrength;
+};
+void RE_Direct_BlinnPhong( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in BlinnPhongMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+	reflectedLight.directSpecular += irradiance * BRDF_BlinnPhong( directLight.direction, geometryViewDir, geometryNormal, material.specularColor, material.specularShininess ) * material.specularStrength;
+}
+void RE_IndirectDiffuse_BlinnPhong( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in BlinnPhongMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_BlinnPhong
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_BlinnPhong`,w_=`PhysicalMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.diffuseContribution = diffuseColor.rgb * ( 1.0 - metalnessFactor );
+material.metalness = metalnessFactor;
+vec3 dxy = max( abs( dFdx( nonPerturbedNormal ) ), abs( dFdy( nonPerturbedNormal ) ) );
+float geometryRoughness = max( max( dxy.x, dxy.y ), dxy.z );
+material.roughness = max( roughnessFactor, 0.045 );
+material.roughness += geometryRoughness;
+material.roughness = min( material.roughness, 1.0 );
+#ifdef USE_DIFFUSE_ROUGHNESS
+	float diffuseRoughnessFactor = diffuseRoughness;
+	#ifdef USE_DIFFUSE_ROUGHNESSMAP
+		diffuseRoughnessFactor *= texture2D( diffuseRoughnessMap, vDiffuseRoughnessMapUv ).r;
+	#endif
+	material.diffuseRoughness = saturate( diffuseRoughnessFactor );
+#endif
+#ifdef IOR
+	material.ior = ior;
+	#ifdef USE_SPECULAR
+		float specularIntensityFactor = specularIntensity;
+		vec3 specularColorFactor = specularColor;
+		#ifdef USE_SPECULAR_COLORMAP
+			specularColorFactor *= texture2D( specularColorMap, vSpecularColorMapUv ).rgb;
+		#endif
+		#ifdef USE_SPECULAR_INTENSITYMAP
+			specularIntensityFactor *= texture2D( specularIntensityMap, vSpecularIntensityMapUv ).a;
+		#endif
+		material.specularF90 = mix( specularIntensityFactor, 1.0, metalnessFactor );
+	#else
+		float specularIntensityFactor = 1.0;
+		vec3 specularColorFactor = vec3( 1.0 );
+		material.specularF90 = 1.0;
+	#endif
+	material.specularColor = min( pow2( ( material.ior - 1.0 ) / ( material.ior + 1.0 ) ) * specularColorFactor, vec3( 1.0 ) ) * specularIntensityFactor;
+	material.specularColorBlended = mix( material.specularColor, diffuseColor.rgb, metalnessFactor );
+#else
+	material.specularColor = vec3( 0.04 );
+	material.specularColorBlended = mix( material.specularColor, diffuseColor.rgb, metalnessFactor );
+	material.specularF90 = 1.0;
+#endif
+#ifdef USE_CLEARCOAT
+	material.clearcoat = clearcoat;
+	material.clearcoatRoughness = clearcoatRoughness;
+	material.clearcoatF0 = vec3( 0.04 );
+	material.clearcoatF90 = 1.0;
+	#ifdef USE_CLEARCOATMAP
+		material.clearcoat *= texture2D( clearcoatMap, vClearcoatMapUv ).x;
+	#endif
+	#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+		material.clearcoatRoughness *= texture2D( clearcoatRoughnessMap, vClearcoatRoughnessMapUv ).y;
+	#endif
+	material.clearcoat = saturate( material.clearcoat );	material.clearcoatRoughness = max( material.clearcoatRoughness, 0.045 );
+	material.clearcoatRoughness += geometryRoughness;
+	material.clearcoatRoughness = min( material.clearcoatRoughness, 1.0 );
+#endif
+#ifdef USE_DISPERSION
+	material.dispersion = dispersion;
+#endif
+#ifdef USE_RETROREFLECTION
+	material.retroreflectivity = retroreflectivity;
+#endif
+#ifdef USE_IRIDESCENCE
+	material.iridescence = iridescence;
+	material.iridescenceIOR = iridescenceIOR;
+	#ifdef USE_IRIDESCENCEMAP
+		material.iridescence *= texture2D( iridescenceMap, vIridescenceMapUv ).r;
+	#endif
+	#ifdef USE_IRIDESCENCE_THICKNESSMAP
+		material.iridescenceThickness = (iridescenceThicknessMaximum - iridescenceThicknessMinimum) * texture2D( iridescenceThicknessMap, vIridescenceThicknessMapUv ).g + iridescenceThicknessMinimum;
+	#else
+		material.iridescenceThickness = iridescenceThicknessMaximum;
+	#endif
+#endif
+#ifdef USE_SHEEN
+	material.sheenColor = sheenColor;
+	#ifdef USE_SHEEN_COLORMAP
+		material.sheenColor *= texture2D( sheenColorMap, vSheenColorMapUv ).rgb;
+	#endif
+	material.sheenRoughness = clamp( sheenRoughness, 0.0001, 1.0 );
+	#ifdef USE_SHEEN_ROUGHNESSMAP
+		material.sheenRoughness *= texture2D( sheenRoughnessMap, vSheenRoughnessMapUv ).a;
+	#endif
+#endif
+#ifdef USE_ANISOTROPY
+	#ifdef USE_ANISOTROPYMAP
+		mat2 anisotropyMat = mat2( anisotropyVector.x, anisotropyVector.y, - anisotropyVector.y, anisotropyVector.x );
+		vec3 anisotropyPolar = texture2D( anisotropyMap, vAnisotropyMapUv ).rgb;
+		vec2 anisotropyV = anisotropyMat * normalize( 2.0 * anisotropyPolar.rg - vec2( 1.0 ) ) * anisotropyPolar.b;
+	#else
+		vec2 anisotropyV = anisotropyVector;
+	#endif
+	material.anisotropy = length( anisotropyV );
+	if( material.anisotropy == 0.0 ) {
+		anisotropyV = vec2( 1.0, 0.0 );
+	} else {
+		anisotropyV /= material.anisotropy;
+		material.anisotropy = saturate( material.anisotropy );
+	}
+	material.alphaT = mix( pow2( material.roughness ), 1.0, pow2( material.anisotropy ) );
+	material.anisotropyT = tbn[ 0 ] * anisotropyV.x + tbn[ 1 ] * anisotropyV.y;
+	material.anisotropyB = tbn[ 1 ] * anisotropyV.x - tbn[ 0 ] * anisotropyV.y;
+#endif`,R_=`uniform sampler2D dfgLUT;
+struct PhysicalMaterial {
+	vec3 diffuseColor;
+	vec3 diffuseContribution;
+	vec3 specularColor;
+	vec3 specularColorBlended;
+	float roughness;
+	float metalness;
+	float specularF90;
+	float dispersion;
+	vec2 dfg;
+	vec3 multiScatteringCompensation;
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		float diffuseRoughness;
+	#endif
+	#ifdef USE_RETROREFLECTION
+		float retroreflectivity;
+	#endif
+	#ifdef USE_CLEARCOAT
+		float clearcoat;
+		float clearcoatRoughness;
+		vec3 clearcoatF0;
+		float clearcoatF90;
+	#endif
+	#ifdef USE_IRIDESCENCE
+		float iridescence;
+		float iridescenceIOR;
+		float iridescenceThickness;
+		vec3 iridescenceFresnel;
+		vec3 iridescenceF0Dielectric;
+		vec3 iridescenceF0Metallic;
+	#endif
+	#ifdef USE_SHEEN
+		vec3 sheenColor;
+		float sheenRoughness;
+	#endif
+	#ifdef IOR
+		float ior;
+	#endif
+	#ifdef USE_TRANSMISSION
+		float transmission;
+		float transmissionAlpha;
+		float thickness;
+		float attenuationDistance;
+		vec3 attenuationColor;
+	#endif
+	#ifdef USE_ANISOTROPY
+		float anisotropy;
+		float alphaT;
+		vec3 anisotropyT;
+		vec3 anisotropyB;
+	#endif
+};
+vec3 clearcoatSpecularDirect = vec3( 0.0 );
+vec3 clearcoatSpecularIndirect = vec3( 0.0 );
+vec3 sheenSpecularDirect = vec3( 0.0 );
+vec3 sheenSpecularIndirect = vec3(0.0 );
+vec3 Schlick_to_F0( const in vec3 f, const in float f90, const in float dotVH ) {
+    float x = clamp( 1.0 - dotVH, 0.0, 1.0 );
+    float x2 = x * x;
+    float x5 = clamp( x * x2 * x2, 0.0, 0.9999 );
+    return ( f - vec3( f90 ) * x5 ) / ( 1.0 - x5 );
+}
+#ifdef USE_DIFFUSE_ROUGHNESS
+	const float EON_EPSILON = 1e-7;
+	float FON_DirectionalAlbedo( const in float mu, const in float roughness, const in float A ) {
+		float muComp = 1.0 - mu;
+		float gOverPi = muComp * ( 0.0571085289 + muComp * ( 0.491881867 + muComp * ( - 0.332181442 + muComp * 0.0714429953 ) ) );
+		return A * ( 1.0 + roughness * gOverPi );
+	}
+	vec3 BRDF_EON( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in vec3 diffuseColor, const in float roughness ) {
+		vec3 rho = saturate( diffuseColor );
+		if ( roughness <= EON_EPSILON ) return BRDF_Lambert( rho );
+		float dotNL = saturate( dot( normal, lightDir ) );
+		float dotNV = saturate( dot( normal, viewDir ) );
+		float s = dot( lightDir, viewDir ) - dotNL * dotNV;
+		float sOverT = ( s > 0.0 ) ? s / max( max( dotNL, dotNV ), EON_EPSILON ) : s;
+		float A = 1.0 / ( 1.0 + ( 0.5 - 2.0 / ( 3.0 * PI ) ) * roughness );
+		vec3 singleScatter = rho * RECIPROCAL_PI * A * ( 1.0 + roughness * sOverT );
+		float averageAlbedo = A * ( 1.0 + ( 2.0 / 3.0 - 28.0 / ( 15.0 * PI ) ) * roughness );
+		float albedoV = FON_DirectionalAlbedo( dotNV, roughness, A );
+		float albedoL = FON_DirectionalAlbedo( dotNL, roughness, A );
+		vec3 rhoMultiScatter = rho * rho * averageAlbedo / max( vec3( EON_EPSILON ), vec3( 1.0 ) - rho * ( 1.0 - averageAlbedo ) );
+		vec3 multiScatter = rhoMultiScatter * RECIPROCAL_PI
+			* max( EON_EPSILON, 1.0 - albedoV )
+			* max( EON_EPSILON, 1.0 - albedoL )
+			/ max( EON_EPSILON, 1.0 - averageAlbedo );
+		return singleScatter + multiScatter;
+	}
+	vec3 EON_DirectionalAlbedo( const in vec3 diffuseColor, const in float roughness, const in float dotNV ) {
+		vec3 rho = saturate( diffuseColor );
+		if ( roughness <= EON_EPSILON ) return rho;
+		float A = 1.0 / ( 1.0 + ( 0.5 - 2.0 / ( 3.0 * PI ) ) * roughness );
+		float directionalAlbedo = FON_DirectionalAlbedo( dotNV, roughness, A );
+		float averageAlbedo = A * ( 1.0 + ( 2.0 / 3.0 - 28.0 / ( 15.0 * PI ) ) * roughness );
+		vec3 rhoMultiScatter = rho * rho * averageAlbedo / max( vec3( EON_EPSILON ), vec3( 1.0 ) - rho * ( 1.0 - averageAlbedo ) );
+		return rho * directionalAlbedo + rhoMultiScatter * ( 1.0 - directionalAlbedo );
+	}
+#endif
+float V_GGX_SmithCorrelated( const in float alpha, const in float dotNL, const in float dotNV ) {
+	float a2 = pow2( alpha );
+	float gv = dotNL * sqrt( a2 + ( 1.0 - a2 ) * pow2( dotNV ) );
+	float gl = dotNV * sqrt( a2 + ( 1.0 - a2 ) * pow2( dotNL ) );
+	return 0.5 / max( gv + gl, EPSILON );
+}
+float D_GGX( const in float alpha, const in float dotNH ) {
+	float a2 = pow2( alpha );
+	float denom = pow2( dotNH ) * ( a2 - 1.0 ) + 1.0;
+	return RECIPROCAL_PI * a2 / pow2( denom );
+}
+#ifdef USE_ANISOTROPY
+	float V_GGX_SmithCorrelated_Anisotropic( const in float alphaT, const in float alphaB, const in float dotTV, const in float dotBV, const in float dotTL, const in float dotBL, const in float dotNV, const in float dotNL ) {
+		float gv = dotNL * length( vec3( alphaT * dotTV, alphaB * dotBV, dotNV ) );
+		float gl = dotNV * length( vec3( alphaT * dotTL, alphaB * dotBL, dotNL ) );
+		return 0.5 / max( gv + gl, EPSILON );
+	}
+	float D_GGX_Anisotropic( const in float alphaT, const in float alphaB, const in float dotNH, const in float dotTH, const in float dotBH ) {
+		float a2 = alphaT * alphaB;
+		highp vec3 v = vec3( alphaB * dotTH, alphaT * dotBH, a2 * dotNH );
+		highp float v2 = dot( v, v );
+		float w2 = a2 / v2;
+		return RECIPROCAL_PI * a2 * pow2 ( w2 );
+	}
+#endif
+#ifdef USE_CLEARCOAT
+	vec3 BRDF_GGX_Clearcoat( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in PhysicalMaterial material) {
+		vec3 f0 = material.clearcoatF0;
+		float f90 = material.clearcoatF90;
+		float roughness = max( material.clearcoatRoughness, 0.045 );
+		float alpha = pow2( roughness );
+		vec3 halfDir = normalize( lightDir + viewDir );
+		float dotNL = saturate( dot( normal, lightDir ) );
+		float dotNV = saturate( dot( normal, viewDir ) );
+		float dotNH = saturate( dot( normal, halfDir ) );
+		float dotVH = saturate( dot( viewDir, halfDir ) );
+		vec3 F = F_Schlick( f0, f90, dotVH );
+		float V = V_GGX_SmithCorrelated( alpha, dotNL, dotNV );
+		float D = D_GGX( alpha, dotNH );
+		return F * ( V * D );
+	}
+#endif
+vec3 BRDF_GGX( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in PhysicalMaterial material ) {
+	vec3 f0 = material.specularColorBlended;
+	float f90 = material.specularF90;
+	float roughness = max( material.roughness, 0.045 );
+	float alpha = pow2( roughness );
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNL = saturate( dot( normal, lightDir ) );
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float dotVH = saturate( dot( viewDir, halfDir ) );
+	vec3 F = F_Schlick( f0, f90, dotVH );
+	#ifdef USE_IRIDESCENCE
+		F = mix( F, material.iridescenceFresnel, material.iridescence );
+	#endif
+	#ifdef USE_ANISOTROPY
+		float dotTL = dot( material.anisotropyT, lightDir );
+		float dotTV = dot( material.anisotropyT, viewDir );
+		float dotTH = dot( material.anisotropyT, halfDir );
+		float dotBL = dot( material.anisotropyB, lightDir );
+		float dotBV = dot( material.anisotropyB, viewDir );
+		float dotBH = dot( material.anisotropyB, halfDir );
+		float alphaT = max( material.alphaT, alpha );
+		float V = V_GGX_SmithCorrelated_Anisotropic( alphaT, alpha, dotTV, dotBV, dotTL, dotBL, dotNV, dotNL );
+		float D = D_GGX_Anisotropic( alphaT, alpha, dotNH, dotTH, dotBH );
+	#else
+		float V = V_GGX_SmithCorrelated( alpha, dotNL, dotNV );
+		float D = D_GGX( alpha, dotNH );
+	#endif
+	return F * ( V * D );
+}
+vec2 LTC_Uv( const in vec3 N, const in vec3 V, const in float roughness ) {
+	const float LUT_SIZE = 64.0;
+	const float LUT_SCALE = ( LUT_SIZE - 1.0 ) / LUT_SIZE;
+	const float LUT_BIAS = 0.5 / LUT_SIZE;
+	float dotNV = saturate( dot( N, V ) );
+	vec2 uv = vec2( roughness, sqrt( 1.0 - dotNV ) );
+	uv = uv * LUT_SCALE + LUT_BIAS;
+	return uv;
+}
+float LTC_ClippedSphereFormFactor( const in vec3 f ) {
+	float l = length( f );
+	return max( ( l * l + f.z ) / ( l + 1.0 ), 0.0 );
+}
+vec3 LTC_EdgeVectorFormFactor( const in vec3 v1, const in vec3 v2 ) {
+	float x = dot( v1, v2 );
+	float y = abs( x );
+	float a = 0.8543985 + ( 0.4965155 + 0.0145206 * y ) * y;
+	float b = 3.4175940 + ( 4.1616724 + y ) * y;
+	float v = a / b;
+	float theta_sintheta = ( x > 0.0 ) ? v : 0.5 * inversesqrt( max( 1.0 - x * x, 1e-7 ) ) - v;
+	return cross( v1, v2 ) * theta_sintheta;
+}
+vec3 LTC_Evaluate( const in vec3 N, const in vec3 V, const in vec3 P, const in mat3 mInv, const in vec3 rectCoords[ 4 ] ) {
+	vec3 v1 = rectCoords[ 1 ] - rectCoords[ 0 ];
+	vec3 v2 = rectCoords[ 3 ] - rectCoords[ 0 ];
+	vec3 lightNormal = cross( v1, v2 );
+	if( dot( lightNormal, P - rectCoords[ 0 ] ) < 0.0 ) return vec3( 0.0 );
+	vec3 T1, T2;
+	T1 = normalize( V - N * dot( V, N ) );
+	T2 = - cross( N, T1 );
+	mat3 mat = mInv * transpose( mat3( T1, T2, N ) );
+	vec3 coords[ 4 ];
+	coords[ 0 ] = mat * ( rectCoords[ 0 ] - P );
+	coords[ 1 ] = mat * ( rectCoords[ 1 ] - P );
+	coords[ 2 ] = mat * ( rectCoords[ 2 ] - P );
+	coords[ 3 ] = mat * ( rectCoords[ 3 ] - P );
+	coords[ 0 ] = normalize( coords[ 0 ] );
+	coords[ 1 ] = normalize( coords[ 1 ] );
+	coords[ 2 ] = normalize( coords[ 2 ] );
+	coords[ 3 ] = normalize( coords[ 3 ] );
+	vec3 vectorFormFactor = vec3( 0.0 );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 0 ], coords[ 1 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 1 ], coords[ 2 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 2 ], coords[ 3 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 3 ], coords[ 0 ] );
+	float result = LTC_ClippedSphereFormFactor( vectorFormFactor );
+	return vec3( result );
+}
+#if defined( USE_SHEEN )
+float D_Charlie( float roughness, float dotNH ) {
+	float alpha = pow2( roughness );
+	float invAlpha = 1.0 / alpha;
+	float cos2h = dotNH * dotNH;
+	float sin2h = max( 1.0 - cos2h, 0.0078125 );
+	return ( 2.0 + invAlpha ) * pow( sin2h, invAlpha * 0.5 ) / ( 2.0 * PI );
+}
+float V_Neubelt( float dotNV, float dotNL ) {
+	return saturate( 1.0 / ( 4.0 * ( dotNL + dotNV - dotNL * dotNV ) ) );
+}
+vec3 BRDF_Sheen( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, vec3 sheenColor, const in float sheenRoughness ) {
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNL = saturate( dot( normal, lightDir ) );
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float D = D_Charlie( sheenRoughness, dotNH );
+	float V = V_Neubelt( dotNV, dotNL );
+	return sheenColor * ( D * V );
+}
+#endif
+float IBLSheenBRDF( const in vec3 normal, const in vec3 viewDir, const in float roughness ) {
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float r2 = roughness * roughness;
+	float rInv = 1.0 / ( roughness + 0.1 );
+	float a = -1.9362 + 1.0678 * roughness + 0.4573 * r2 - 0.8469 * rInv;
+	float b = -0.6014 + 0.5538 * roughness - 0.4670 * r2 - 0.1255 * rInv;
+	float DG = exp( a * dotNV + b );
+	return saturate( DG );
+}
+vec3 EnvironmentBRDF( const in vec3 normal, const in vec3 viewDir, const in vec3 specularColor, const in float specularF90, const in float roughness ) {
+	float dotNV = saturate( dot( normal, viewDir ) );
+	vec2 fab = texture2D( dfgLUT, vec2( roughness, dotNV ) ).rg;
+	return specularColor * fab.x + specularF90 * fab.y;
+}
+#ifdef USE_IRIDESCENCE
+void computeMultiscatteringIridescence( const in vec2 fab, const in vec3 specularColor, const in float specularF90, const in float iridescence, const in vec3 iridescenceF0, inout vec3 singleScatter, inout vec3 multiScatter ) {
+#else
+void computeMultiscattering( const in vec2 fab, const in vec3 specularColor, const in float specularF90, inout vec3 singleScatter, inout vec3 multiScatter ) {
+#endif
+	#ifdef USE_IRIDESCENCE
+		vec3 Fr = mix( specularColor, iridescenceF0, iridescence );
+	#else
+		vec3 Fr = specularColor;
+	#endif
+	vec3 FssEss = Fr * fab.x + specularF90 * fab.y;
+	float Ess = fab.x + fab.y;
+	float Ems = 1.0 - Ess;
+	vec3 Favg = Fr + ( 1.0 - Fr ) * 0.047619;	vec3 Fms = FssEss * Favg / ( 1.0 - Ems * Favg );
+	singleScatter += FssEss;
+	multiScatter += Fms * Ems;
+}
+#if NUM_RECT_AREA_LIGHTS > 0
+	void RE_Direct_RectArea_Physical( const in RectAreaLight rectAreaLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+		vec3 normal = geometryNormal;
+		vec3 viewDir = geometryViewDir;
+		vec3 position = geometryPosition;
+		vec3 lightPos = rectAreaLight.position;
+		vec3 halfWidth = rectAreaLight.halfWidth;
+		vec3 halfHeight = rectAreaLight.halfHeight;
+		vec3 lightColor = rectAreaLight.color;
+		float roughness = material.roughness;
+		vec3 rectCoords[ 4 ];
+		rectCoords[ 0 ] = lightPos + halfWidth - halfHeight;		rectCoords[ 1 ] = lightPos - halfWidth - halfHeight;
+		rectCoords[ 2 ] = lightPos - halfWidth + halfHeight;
+		rectCoords[ 3 ] = lightPos + halfWidth + halfHeight;
+		vec2 uv = LTC_Uv( normal, viewDir, roughness );
+		vec4 t1 = texture2D( ltc_1, uv );
+		vec4 t2 = texture2D( ltc_2, uv );
+		mat3 mInv = mat3(
+			vec3( t1.x, 0, t1.y ),
+			vec3(    0, 1,    0 ),
+			vec3( t1.z, 0, t1.w )
+		);
+		vec3 fresnel = ( material.specularColorBlended * t2.x + ( material.specularF90 - material.specularColorBlended ) * t2.y );
+		reflectedLight.directSpecular += lightColor * fresnel * LTC_Evaluate( normal, viewDir, position, mInv, rectCoords );
+		reflectedLight.directDiffuse += lightColor * material.diffuseContribution * LTC_Evaluate( normal, viewDir, position, mat3( 1.0 ), rectCoords );
+		#ifdef USE_CLEARCOAT
+			vec3 Ncc = geometryClearcoatNormal;
+			vec2 uvClearcoat = LTC_Uv( Ncc, viewDir, material.clearcoatRoughness );
+			vec4 t1Clearcoat = texture2D( ltc_1, uvClearcoat );
+			vec4 t2Clearcoat = texture2D( ltc_2, uvClearcoat );
+			mat3 mInvClearcoat = mat3(
+				vec3( t1Clearcoat.x, 0, t1Clearcoat.y ),
+				vec3(             0, 1,             0 ),
+				vec3( t1Clearcoat.z, 0, t1Clearcoat.w )
+			);
+			vec3 fresnelClearcoat = material.clearcoatF0 * t2Clearcoat.x + ( material.clearcoatF90 - material.clearcoatF0 ) * t2Clearcoat.y;
+			clearcoatSpecularDirect += lightColor * fresnelClearcoat * LTC_Evaluate( Ncc, viewDir, position, mInvClearcoat, rectCoords );
+		#endif
+	}
+#endif
+void RE_Direct_Physical( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	#ifdef USE_CLEARCOAT
+		float dotNLcc = saturate( dot( geometryClearcoatNormal, directLight.direction ) );
+		vec3 ccIrradiance = dotNLcc * directLight.color;
+		clearcoatSpecularDirect += ccIrradiance * BRDF_GGX_Clearcoat( directLight.direction, geometryViewDir, geometryClearcoatNormal, material );
+	#endif
+	#ifdef USE_SHEEN
+ 
+ 		sheenSpecularDirect += irradiance * BRDF_Sheen( directLight.direction, geometryViewDir, geometryNormal, material.sheenColor, material.sheenRoughness );
+ 
+ 		float sheenAlbedoV = IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+ 		float sheenAlbedoL = IBLSheenBRDF( geometryNormal, directLight.direction, material.sheenRoughness );
+ 
+ 		float sheenEnergyComp = 1.0 - max3( material.sheenColor ) * max( sheenAlbedoV, sheenAlbedoL );
+ 
+ 		irradiance *= sheenEnergyComp;
+ 
+ 	#endif
+	vec3 specularBRDF = BRDF_GGX( directLight.direction, geometryViewDir, geometryNormal, material );
+	#ifdef USE_RETROREFLECTION
+		vec3 retroViewDir = reflect( - geometryViewDir, geometryNormal );
+		vec3 retroSpecularBRDF = BRDF_GGX( directLight.direction, retroViewDir, geometryNormal, material );
+		specularBRDF = mix( specularBRDF, retroSpecularBRDF, saturate( material.retroreflectivity ) );
+	#endif
+	reflectedLight.directSpecular += irradiance * specularBRDF * material.multiScatteringCompensation;
+	vec3 halfDir = normalize( directLight.direction + geometryViewDir );
+	float dotVH = saturate( dot( geometryViewDir, halfDir ) );
+	vec3 F = F_Schlick( material.specularColor, material.specularF90, dotVH );
+	#ifdef USE_RETROREFLECTION
+		vec3 retroHalfDir = normalize( directLight.direction + retroViewDir );
+		float dotRetroVH = saturate( dot( retroViewDir, retroHalfDir ) );
+		vec3 retroF = F_Schlick( material.specularColor, material.specularF90, dotRetroVH );
+		F = mix( F, retroF, saturate( material.retroreflectivity ) );
+	#endif
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		vec3 diffuseBRDF = BRDF_EON( directLight.direction, geometryViewDir, geometryNormal, material.diffuseColor, material.diffuseRoughness ) * ( 1.0 - material.metalness );
+	#else
+		vec3 diffuseBRDF = BRDF_Lambert( material.diffuseContribution );
+	#endif
+	reflectedLight.directDiffuse += irradiance * diffuseBRDF * ( 1.0 - F );
+}
+void RE_IndirectDiffuse_Physical( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+	vec3 singleScattering = vec3( 0.0 );
+	vec3 multiScattering = vec3( 0.0 );
+	#ifdef USE_IRIDESCENCE
+		computeMultiscatteringIridescence( material.dfg, material.specularColor, material.specularF90, material.iridescence, material.iridescenceF0Dielectric, singleScattering, multiScattering );
+	#else
+		computeMultiscattering( material.dfg, material.specularColor, material.specularF90, singleScattering, multiScattering );
+	#endif
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		vec3 diffuseAlbedo = EON_DirectionalAlbedo( material.diffuseColor, material.diffuseRoughness, dotNV ) * ( 1.0 - material.metalness );
+		vec3 diffuse = irradiance * RECIPROCAL_PI * diffuseAlbedo * ( 1.0 - singleScattering - multiScattering );
+	#else
+		vec3 diffuse = irradiance * BRDF_Lambert( material.diffuseContribution ) * ( 1.0 - singleScattering - multiScattering );
+	#endif
+	#ifdef USE_SHEEN
+		float sheenAlbedo = IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+		sheenSpecularIndirect += irradiance * material.sheenColor * sheenAlbedo * RECIPROCAL_PI;
+		float sheenEnergyComp = 1.0 - max3( material.sheenColor ) * sheenAlbedo;
+		diffuse *= sheenEnergyComp;
+	#endif
+	reflectedLight.indirectDiffuse += diffuse;
+}
+void RE_IndirectSpecular_Physical( const in vec3 radiance, const in vec3 irradiance, const in vec3 clearcoatRadiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
+	#ifdef USE_CLEARCOAT
+		clearcoatSpecularIndirect += clearcoatRadiance * EnvironmentBRDF( geometryClearcoatNormal, geometryViewDir, material.clearcoatF0, material.clearcoatF90, material.clearcoatRoughness );
+	#endif
+	#ifdef USE_SHEEN
+		sheenSpecularIndirect += irradiance * material.sheenColor * IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness ) * RECIPROCAL_PI;
+ 	#endif
+	vec3 singleScatteringDielectric = vec3( 0.0 );
+	vec3 multiScatteringDielectric = vec3( 0.0 );
+	vec3 singleScatteringMetallic = vec3( 0.0 );
+	vec3 multiScatteringMetallic = vec3( 0.0 );
+	#ifdef USE_IRIDESCENCE
+		computeMultiscatteringIridescence( material.dfg, material.specularColor, material.specularF90, material.iridescence, material.iridescenceF0Dielectric, singleScatteringDielectric, multiScatteringDielectric );
+		computeMultiscatteringIridescence( material.dfg, material.diffuseColor, material.specularF90, material.iridescence, material.iridescenceF0Metallic, singleScatteringMetallic, multiScatteringMetallic );
+	#else
+		computeMultiscattering( material.dfg, material.specularColor, material.specularF90, singleScatteringDielectric, multiScatteringDielectric );
+		computeMultiscattering( material.dfg, material.diffuseColor, material.specularF90, singleScatteringMetallic, multiScatteringMetallic );
+	#endif
+	vec3 singleScattering = mix( singleScatteringDielectric, singleScatteringMetallic, material.metalness );
+	vec3 multiScattering = mix( multiScatteringDielectric, multiScatteringMetallic, material.metalness );
+	vec3 totalScatteringDielectric = singleScatteringDielectric + multiScatteringDielectric;
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		vec3 diffuse = EON_DirectionalAlbedo( material.diffuseColor, material.diffuseRoughness, dotNV ) * ( 1.0 - material.metalness ) * ( 1.0 - totalScatteringDielectric );
+	#else
+		vec3 diffuse = material.diffuseContribution * ( 1.0 - totalScatteringDielectric );
+	#endif
+	vec3 cosineWeightedIrradiance = irradiance * RECIPROCAL_PI;
+	vec3 indirectSpecular = radiance * singleScattering;
+	indirectSpecular += multiScattering * cosineWeightedIrradiance;
+	vec3 indirectDiffuse = diffuse * cosineWeightedIrradiance;
+	#ifdef USE_SHEEN
+		float sheenAlbedo = IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+		float sheenEnergyComp = 1.0 - max3( material.sheenColor ) * sheenAlbedo;
+		indirectSpecular *= sheenEnergyComp;
+		indirectDiffuse *= sheenEnergyComp;
+	#endif
+	reflectedLight.indirectSpecular += indirectSpecular;
+	reflectedLight.indirectDiffuse += indirectDiffuse;
+}
+#define RE_Direct				RE_Direct_Physical
+#define RE_Direct_RectArea		RE_Direct_RectArea_Physical
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Physical
+#define RE_IndirectSpecular		RE_IndirectSpecular_Physical
+float computeSpecularOcclusion( const in float dotNV, const in float ambientOcclusion, const in float roughness ) {
+	return saturate( pow( dotNV + ambientOcclusion, exp2( - 16.0 * roughness - 1.0 ) ) - 1.0 + ambientOcclusion );
+}`,C_=`
+vec3 geometryPosition = - vViewPosition;
+vec3 geometryNormal = normal;
+vec3 geometryViewDir = ( isOrthographic ) ? vec3( 0, 0, 1 ) : normalize( vViewPosition );
+vec3 geometryClearcoatNormal = vec3( 0.0 );
+#ifdef USE_CLEARCOAT
+	geometryClearcoatNormal = clearcoatNormal;
+#endif
+#ifdef USE_IRIDESCENCE
+	float dotNVi = saturate( dot( normal, geometryViewDir ) );
+	if ( material.iridescenceThickness == 0.0 ) {
+		material.iridescence = 0.0;
+	} else {
+		material.iridescence = saturate( material.iridescence );
+	}
+	if ( material.iridescence > 0.0 ) {
+		vec3 iridescenceFresnelDielectric = evalIridescence( 1.0, material.iridescenceIOR, dotNVi, material.iridescenceThickness, material.specularColor );
+		vec3 iridescenceFresnelMetallic = evalIridescence( 1.0, material.iridescenceIOR, dotNVi, material.iridescenceThickness, material.diffuseColor );
+		material.iridescenceFresnel = mix( iridescenceFresnelDielectric, iridescenceFresnelMetallic, material.metalness );
+		material.iridescenceF0Dielectric = Schlick_to_F0( iridescenceFresnelDielectric, 1.0, dotNVi );
+		material.iridescenceF0Metallic = Schlick_to_F0( iridescenceFresnelMetallic, 1.0, dotNVi );
+	}
+#endif
+#ifdef STANDARD
+	float dotNVms = saturate( dot( geometryNormal, geometryViewDir ) );
+	material.dfg = texture2D( dfgLUT, vec2( material.roughness, dotNVms ) ).rg;
+	#if ( NUM_SUN_LIGHTS > 0 || NUM_DIR_LIGHTS > 0 || NUM_POINT_LIGHTS > 0 || NUM_SPOT_LIGHTS > 0 )
+		float EssMs = material.dfg.x + material.dfg.y;
+		material.multiScatteringCompensation = 1.0 + material.specularColorBlended * ( 1.0 / EssMs - 1.0 );
+	#endif
+#endif
+IncidentLight directLight;
+#if ( NUM_POINT_LIGHTS > 0 ) && defined( RE_Direct )
+	PointLight pointLight;
+	#if defined( USE_SHADOWMAP ) && NUM_POINT_LIGHT_SHADOWS > 0
+	PointLightShadow pointLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_POINT_LIGHTS; i ++ ) {
+		pointLight = pointLights[ i ];
+		getPointLightInfo( pointLight, geometryPosition, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_POINT_LIGHT_SHADOWS ) && ( defined( SHADOWMAP_TYPE_PCF ) || defined( SHADOWMAP_TYPE_BASIC ) )
+		pointLightShadow = pointLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getPointShadow( pointShadowMap[ i ], pointLightShadow.shadowMapSize, pointLightShadow.shadowIntensity, pointLightShadow.shadowBias, pointLightShadow.shadowRadius, vPointShadowCoord[ i ], pointLightShadow.shadowCameraNear, pointLightShadow.shadowCameraFar ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_SPOT_LIGHTS > 0 ) && defined( RE_Direct )
+	SpotLight spotLight;
+	vec4 spotColor;
+	vec3 spotLightCoord;
+	bool inSpotLightMap;
+	#if defined( USE_SHADOWMAP ) && NUM_SPOT_LIGHT_SHADOWS > 0
+	SpotLightShadow spotLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHTS; i ++ ) {
+		spotLight = spotLights[ i ];
+		getSpotLightInfo( spotLight, geometryPosition, directLight );
+		#if ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS )
+		#define SPOT_LIGHT_MAP_INDEX UNROLLED_LOOP_INDEX
+		#elif ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+		#define SPOT_LIGHT_MAP_INDEX NUM_SPOT_LIGHT_MAPS
+		#else
+		#define SPOT_LIGHT_MAP_INDEX ( UNROLLED_LOOP_INDEX - NUM_SPOT_LIGHT_SHADOWS + NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS )
+		#endif
+		#if ( SPOT_LIGHT_MAP_INDEX < NUM_SPOT_LIGHT_MAPS )
+			spotLightCoord = vSpotLightCoord[ i ].xyz / vSpotLightCoord[ i ].w;
+			inSpotLightMap = all( lessThan( abs( spotLightCoord * 2. - 1. ), vec3( 1.0 ) ) );
+			spotColor = texture2D( spotLightMap[ SPOT_LIGHT_MAP_INDEX ], spotLightCoord.xy );
+			directLight.color = inSpotLightMap ? directLight.color * spotColor.rgb : directLight.color;
+		#endif
+		#undef SPOT_LIGHT_MAP_INDEX
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+		spotLightShadow = spotLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getShadow( spotShadowMap[ i ], spotLightShadow.shadowMapSize, spotLightShadow.shadowIntensity, spotLightShadow.shadowBias, spotLightShadow.shadowRadius, vSpotLightCoord[ i ] ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_SUN_LIGHTS > 0 ) && defined( RE_Direct )
+	SunLight sunLight;
+	#if defined( USE_SHADOWMAP ) && NUM_SUN_LIGHT_SHADOWS > 0
+	SunLightShadow sunLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SUN_LIGHTS; i ++ ) {
+		sunLight = sunLights[ i ];
+		getSunLightInfo( sunLight, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_SUN_LIGHT_SHADOWS )
+		sunLightShadow = sunLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getSunShadow( sunShadowMap[ i ], sunLightShadow, UNROLLED_LOOP_INDEX ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_DIR_LIGHTS > 0 ) && defined( RE_Direct )
+	DirectionalLight directionalLight;
+	#if defined( USE_SHADOWMAP ) && NUM_DIR_LIGHT_SHADOWS > 0
+	DirectionalLightShadow directionalLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_DIR_LIGHTS; i ++ ) {
+		directionalLight = directionalLights[ i ];
+		getDirectionalLightInfo( directionalLight, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_DIR_LIGHT_SHADOWS )
+		directionalLightShadow = directionalLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getShadow( directionalShadowMap[ i ], directionalLightShadow.shadowMapSize, directionalLightShadow.shadowIntensity, directionalLightShadow.shadowBias, directionalLightShadow.shadowRadius, vDirectionalShadowCoord[ i ] ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_RECT_AREA_LIGHTS > 0 ) && defined( RE_Direct_RectArea )
+	RectAreaLight rectAreaLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_RECT_AREA_LIGHTS; i ++ ) {
+		rectAreaLight = rectAreaLights[ i ];
+		RE_Direct_RectArea( rectAreaLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if defined( RE_IndirectDiffuse )
+	vec3 iblIrradiance = vec3( 0.0 );
+	vec3 irradiance = getAmbientLightIrradiance( ambientLightColor );
+	#if defined( USE_LIGHT_PROBES )
+		irradiance += getLightProbeIrradiance( lightProbe, geometryNormal );
+	#endif
+	#if ( NUM_HEMI_LIGHTS > 0 )
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_HEMI_LIGHTS; i ++ ) {
+			irradiance += getHemisphereLightIrradiance( hemisphereLights[ i ], geometryNormal );
+		}
+		#pragma unroll_loop_end
+	#endif
+	#if NUM_LIGHT_PROBE_GRIDS > 0
+		vec3 probeWorldPos = ( ( vec4( geometryPosition, 1.0 ) - viewMatrix[ 3 ] ) * viewMatrix ).xyz;
+		vec3 probeWorldNormal = transformNormalByInverseViewMatrix( geometryNormal, viewMatrix );
+		int probeGrid = - 1;
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_LIGHT_PROBE_GRIDS; i ++ ) {
+			if ( isInsideLightProbeGrid( probeWorldPos, probeWorldNormal, probesMin[ i ], probesMax[ i ], probesResolution[ i ] ) ) probeGrid = UNROLLED_LOOP_INDEX;
+		}
+		#pragma unroll_loop_end
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_LIGHT_PROBE_GRIDS; i ++ ) {
+			if ( probeGrid == UNROLLED_LOOP_INDEX ) irradiance += getLightProbeGridIrradiance( probesSH[ i ], probesMin[ i ], probesMax[ i ], probesResolution[ i ], probeWorldPos, probeWorldNormal );
+		}
+		#pragma unroll_loop_end
+	#endif
+#endif
+#if defined( RE_IndirectSpecular )
+	vec3 radiance = vec3( 0.0 );
+	vec3 clearcoatRadiance = vec3( 0.0 );
+#endif`,P_=`#if defined( RE_IndirectDiffuse )
+	#ifdef USE_LIGHTMAP
+		vec4 lightMapTexel = texture2D( lightMap, vLightMapUv );
+		vec3 lightMapIrradiance = lightMapTexel.rgb * lightMapIntensity;
+		irradiance += lightMapIrradiance;
+	#endif
+	#if defined( USE_ENVMAP ) && defined( ENVMAP_TYPE_PMREM )
+		#if defined( STANDARD ) || defined( LAMBERT ) || defined( PHONG )
+			iblIrradiance += getIBLIrradiance( geometryNormal );
+		#endif
+	#endif
+#endif
+#if defined( USE_ENVMAP ) && defined( RE_IndirectSpecular )
+	#ifdef USE_ANISOTROPY
+		vec3 iblRadiance = getIBLAnisotropyRadiance( geometryViewDir, geometryNormal, material.roughness, material.anisotropyB, material.anisotropy );
+	#else
+		vec3 iblRadiance = getIBLRadiance( geometryViewDir, geometryNormal, material.roughness );
+	#endif
+	#ifdef USE_RETROREFLECTION
+		#ifdef USE_ANISOTROPY
+			vec3 retroIBLRadiance = getIBLAnisotropyRetroRadiance( geometryViewDir, geometryNormal, material.roughness, material.anisotropyB, material.anisotropy );
+		#else
+			vec3 retroIBLRadiance = getIBLRetroRadiance( geometryViewDir, geometryNormal, material.roughness );
+		#endif
+		iblRadiance = mix( iblRadiance, retroIBLRadiance, saturate( material.retroreflectivity ) );
+	#endif
+	radiance += iblRadiance;
+	#ifdef USE_CLEARCOAT
+		clearcoatRadiance += getIBLRadiance( geometryViewDir, geometryClearcoatNormal, material.clearcoatRoughness );
+	#endif
+#endif`,L_=`#if defined( RE_IndirectDiffuse )
+	#if defined( LAMBERT ) || defined( PHONG )
+		irradiance += iblIrradiance;
+	#endif
+	RE_IndirectDiffuse( irradiance, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+#endif
+#if defined( RE_IndirectSpecular )
+	RE_IndirectSpecular( radiance, iblIrradiance, clearcoatRadiance, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+#endif`,D_=`#if NUM_LIGHT_PROBE_GRIDS > 0
+uniform highp sampler3D probesSH[ NUM_LIGHT_PROBE_GRIDS ];
+uniform vec3 probesMin[ NUM_LIGHT_PROBE_GRIDS ];
+uniform vec3 probesMax[ NUM_LIGHT_PROBE_GRIDS ];
+uniform vec3 probesResolution[ NUM_LIGHT_PROBE_GRIDS ];
+bool isInsideLightProbeGrid( vec3 worldPos, vec3 worldNormal, vec3 probesMin, vec3 probesMax, vec3 probesResolution ) {
+	vec3 spacing = ( probesMax - probesMin ) / probesResolution;
+	vec3 samplePos = worldPos + worldNormal * spacing * 0.5;
+	vec3 margin = spacing * 0.01;
+	return all( greaterThanEqual( samplePos, probesMin - margin ) ) && all( lessThanEqual( samplePos, probesMax + margin ) );
+}
+vec3 getLightProbeGridIrradiance( highp sampler3D probesSH, vec3 probesMin, vec3 probesMax, vec3 probesResolution, vec3 worldPos, vec3 worldNormal ) {
+	vec3 res = probesResolution;
+	vec3 gridRange = probesMax - probesMin;
+	vec3 probeSpacing = gridRange / res;
+	vec3 samplePos = worldPos + worldNormal * probeSpacing * 0.5;
+	vec3 uvw = clamp( ( samplePos - probesMin ) / gridRange, 0.5 / res, 1.0 - 0.5 / res );
+	float nz          = res.z;
+	float paddedSlices = nz + 2.0;
+	float atlasDepth  = 7.0 * paddedSlices;
+	float uvZBase     = uvw.z * nz + 1.0;
+	vec4 s0 = texture( probesSH, vec3( uvw.xy, ( uvZBase                       ) / atlasDepth ) );
+	vec4 s1 = texture( probesSH, vec3( uvw.xy, ( uvZBase +       paddedSlices   ) / atlasDepth ) );
+	vec4 s2 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 2.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s3 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 3.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s4 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 4.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s5 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 5.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s6 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 6.0 * paddedSlices   ) / atlasDepth ) );
+	vec3 c0 = s0.xyz;
+	vec3 c1 = vec3( s0.w, s1.xy );
+	vec3 c2 = vec3( s1.zw, s2.x );
+	vec3 c3 = s2.yzw;
+	vec3 c4 = s3.xyz;
+	vec3 c5 = vec3( s3.w, s4.xy );
+	vec3 c6 = vec3( s4.zw, s5.x );
+	vec3 c7 = s5.yzw;
+	vec3 c8 = s6.xyz;
+	float x = worldNormal.x, y = worldNormal.y, z = worldNormal.z;
+	vec3 result = c0 * 0.886227;
+	result += c1 * 2.0 * 0.511664 * y;
+	result += c2 * 2.0 * 0.511664 * z;
+	result += c3 * 2.0 * 0.511664 * x;
+	result += c4 * 2.0 * 0.429043 * x * y;
+	result += c5 * 2.0 * 0.429043 * y * z;
+	result += c6 * ( 0.743125 * z * z - 0.247708 );
+	result += c7 * 2.0 * 0.429043 * x * z;
+	result += c8 * 0.429043 * ( x * x - y * y );
+	return max( result, vec3( 0.0 ) );
+}
+#endif`,I_=`#if defined( USE_LOGARITHMIC_DEPTH_BUFFER )
+	gl_FragDepth = vIsPerspective == 0.0 ? gl_FragCoord.z : log2( vFragDepth ) * logDepthBufFC * 0.5;
+#endif`,N_=`#if defined( USE_LOGARITHMIC_DEPTH_BUFFER )
+	uniform float logDepthBufFC;
+	varying float vFragDepth;
+	varying float vIsPerspective;
+#endif`,U_=`#ifdef USE_LOGARITHMIC_DEPTH_BUFFER
+	varying float vFragDepth;
+	varying float vIsPerspective;
+#endif`,F_=`#ifdef USE_LOGARITHMIC_DEPTH_BUFFER
+	vFragDepth = 1.0 + gl_Position.w;
+	vIsPerspective = float( isPerspectiveMatrix( projectionMatrix ) );
+#endif`,O_=`#ifdef USE_MAP
+	vec4 sampledDiffuseColor = texture2D( map, vMapUv );
+	#ifdef DECODE_VIDEO_TEXTURE
+		sampledDiffuseColor = sRGBTransferEOTF( sampledDiffuseColor );
+	#endif
+	diffuseColor *= sampledDiffuseColor;
+#endif`,B_=`#ifdef USE_MAP
+	uniform sampler2D map;
+#endif`,k_=`#if defined( USE_MAP ) || defined( USE_ALPHAMAP )
+	#if defined( USE_POINTS_UV )
+		vec2 uv = vUv;
+	#else
+		vec2 uv = ( uvTransform * vec3( gl_PointCoord.x, 1.0 - gl_PointCoord.y, 1 ) ).xy;
+	#endif
+#endif
+#ifdef USE_MAP
+	diffuseColor *= texture2D( map, uv );
+#endif
+#ifdef USE_ALPHAMAP
+	diffuseColor.a *= texture2D( alphaMap, uv ).g;
+#endif`,z_=`#if defined( USE_POINTS_UV )
+	varying vec2 vUv;
+#else
+	#if defined( USE_MAP ) || defined( USE_ALPHAMAP )
+		uniform mat3 uvTransform;
+	#endif
+#endif
+#ifdef USE_MAP
+	uniform sampler2D map;
+#endif
+#ifdef USE_ALPHAMAP
+	uniform sampler2D alphaMap;
+#endif`,H_=`float metalnessFactor = metalness;
+#ifdef USE_METALNESSMAP
+	vec4 texelMetalness = texture2D( metalnessMap, vMetalnessMapUv );
+	metalnessFactor *= texelMetalness.b;
+#endif`,G_=`#ifdef USE_METALNESSMAP
+	uniform sampler2D metalnessMap;
+#endif`,V_=`#ifdef USE_INSTANCING_MORPH
+	float morphTargetInfluences[ MORPHTARGETS_COUNT ];
+	float morphTargetBaseInfluence = texelFetch( morphTexture, ivec2( 0, gl_InstanceID ), 0 ).r;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		morphTargetInfluences[i] =  texelFetch( morphTexture, ivec2( i + 1, gl_InstanceID ), 0 ).r;
+	}
+#endif`,W_=`#if defined( USE_MORPHCOLORS )
+	#if defined( USE_COLOR_ALPHA )
+		vColor *= morphTargetBaseInfluence;
+	#elif defined( USE_COLOR )
+		vColor.rgb *= morphTargetBaseInfluence;
+	#endif
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		#if defined( USE_COLOR_ALPHA )
+			if ( morphTargetInfluences[ i ] != 0.0 ) vColor += getMorph( gl_VertexID, i, 2 ) * morphTargetInfluences[ i ];
+		#elif defined( USE_COLOR )
+			if ( morphTargetInfluences[ i ] != 0.0 ) vColor.rgb += getMorph( gl_VertexID, i, 2 ).rgb * morphTargetInfluences[ i ];
+		#endif
+	}
+#endif`,X_=`#ifdef USE_MORPHNORMALS
+	objectNormal *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		if ( morphTargetInfluences[ i ] != 0.0 ) objectNormal += getMorph( gl_VertexID, i, 1 ).xyz * morphTargetInfluences[ i ];
+	}
+#endif`,$_=`#ifdef USE_MORPHTARGETS
+	#ifndef USE_INSTANCING_MORPH
+		uniform float morphTargetBaseInfluence;
+		uniform float morphTargetInfluences[ MORPHTARGETS_COUNT ];
+	#endif
+	uniform sampler2DArray morphTargetsTexture;
+	uniform ivec2 morphTargetsTextureSize;
+	vec4 getMorph( const in int vertexIndex, const in int morphTargetIndex, const in int offset ) {
+		int texelIndex = vertexIndex * MORPHTARGETS_TEXTURE_STRIDE + offset;
+		int y = texelIndex / morphTargetsTextureSize.x;
+		int x = texelIndex - y * morphTargetsTextureSize.x;
+		ivec3 morphUV = ivec3( x, y, morphTargetIndex );
+		return texelFetch( morphTargetsTexture, morphUV, 0 );
+	}
+#endif`,q_=`#ifdef USE_MORPHTARGETS
+	transformed *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		if ( morphTargetInfluences[ i ] != 0.0 ) transformed += getMorph( gl_VertexID, i, 0 ).xyz * morphTargetInfluences[ i ];
+	}
+#endif`,Y_=`float faceDirection = gl_FrontFacing ? 1.0 : - 1.0;
+#ifdef FLAT_SHADED
+	vec3 fdx = dFdx( vViewPosition );
+	vec3 fdy = dFdy( vViewPosition );
+	vec3 normal = normalize( cross( fdx, fdy ) );
+#else
+	vec3 normal = normalize( vNormal );
+	#ifdef DOUBLE_SIDED
+		normal *= faceDirection;
+	#endif
+#endif
+#if defined( USE_NORMALMAP_TANGENTSPACE ) || defined( USE_CLEARCOAT_NORMALMAP ) || defined( USE_ANISOTROPY )
+	#ifdef USE_TANGENT
+		mat3 tbn = mat3( normalize( vTangent ), normalize( vBitangent ), normal );
+	#else
+		mat3 tbn = getTangentFrame( - vViewPosition, normal,
+		#if defined( USE_NORMALMAP )
+			vNormalMapUv
+		#elif defined( USE_CLEARCOAT_NORMALMAP )
+			vClearcoatNormalMapUv
+		#else
+			vUv
+		#endif
+		);
+	#endif
+	#ifdef DOUBLE_SIDED
+		tbn[0] *= faceDirection;
+		tbn[1] *= faceDirection;
+	#endif
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	#ifdef USE_TANGENT
+		mat3 tbn2 = mat3( normalize( vTangent ), normalize( vBitangent ), normal );
+	#else
+		mat3 tbn2 = getTangentFrame( - vViewPosition, normal, vClearcoatNormalMapUv );
+	#endif
+	#ifdef DOUBLE_SIDED
+		tbn2[0] *= faceDirection;
+		tbn2[1] *= faceDirection;
+	#endif
+#endif
+vec3 nonPerturbedNormal = normal;`,K_=`#ifdef USE_NORMALMAP_OBJECTSPACE
+	normal = texture2D( normalMap, vNormalMapUv ).xyz * 2.0 - 1.0;
+	#ifdef FLIP_SIDED
+		normal = - normal;
+	#endif
+	#ifdef DOUBLE_SIDED
+		normal = normal * faceDirection;
+	#endif
+	normal = normalize( normalMatrix * normal );
+#elif defined( USE_NORMALMAP_TANGENTSPACE )
+	vec3 mapN = texture2D( normalMap, vNormalMapUv ).xyz * 2.0 - 1.0;
+	#if defined( USE_PACKED_NORMALMAP )
+		mapN = vec3( mapN.xy, sqrt( saturate( 1.0 - dot( mapN.xy, mapN.xy ) ) ) );
+	#endif
+	mapN.xy *= normalScale;
+	normal = normalize( tbn * mapN );
+#elif defined( USE_BUMPMAP )
+	normal = perturbNormalArb( - vViewPosition, normal, dHdxy_fwd(), faceDirection );
+#endif`,Z_=`#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+	#ifdef USE_TANGENT
+		varying vec3 vTangent;
+		varying vec3 vBitangent;
+	#endif
+#endif`,J_=`#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+	#ifdef USE_TANGENT
+		varying vec3 vTangent;
+		varying vec3 vBitangent;
+	#endif
+#endif`,Q_=`#ifndef FLAT_SHADED
+	vNormal = normalize( transformedNormal );
+	#ifdef USE_TANGENT
+		vTangent = normalize( transformedTangent );
+		vBitangent = normalize( cross( vNormal, vTangent ) * tangent.w );
+		#ifdef FLIP_SIDED
+			vBitangent = - vBitangent;
+		#endif
+	#endif
+#endif`,j_=`#ifdef USE_NORMALMAP
+	uniform sampler2D normalMap;
+	uniform vec2 normalScale;
+#endif
+#ifdef USE_NORMALMAP_OBJECTSPACE
+	uniform mat3 normalMatrix;
+#endif
+#if ! defined ( USE_TANGENT ) && ( defined ( USE_NORMALMAP_TANGENTSPACE ) || defined ( USE_CLEARCOAT_NORMALMAP ) || defined( USE_ANISOTROPY ) )
+	mat3 getTangentFrame( vec3 eye_pos, vec3 surf_norm, vec2 uv ) {
+		vec3 q0 = dFdx( eye_pos.xyz );
+		vec3 q1 = dFdy( eye_pos.xyz );
+		vec2 st0 = dFdx( uv.st );
+		vec2 st1 = dFdy( uv.st );
+		vec3 N = surf_norm;
+		vec3 q1perp = cross( q1, N );
+		vec3 q0perp = cross( N, q0 );
+		vec3 T = q1perp * st0.x + q0perp * st1.x;
+		vec3 B = q1perp * st0.y + q0perp * st1.y;
+		float det = max( dot( T, T ), dot( B, B ) );
+		float scale = ( det == 0.0 ) ? 0.0 : inversesqrt( det );
+		return mat3( T * scale, B * scale, N );
+	}
+#endif`,e0=`#ifdef USE_CLEARCOAT
+	vec3 clearcoatNormal = nonPerturbedNormal;
+#endif`,t0=`#ifdef USE_CLEARCOAT_NORMALMAP
+	vec3 clearcoatMapN = texture2D( clearcoatNormalMap, vClearcoatNormalMapUv ).xyz * 2.0 - 1.0;
+	clearcoatMapN.xy *= clearcoatNormalScale;
+	clearcoatNormal = normalize( tbn2 * clearcoatMapN );
+#endif`,n0=`#ifdef USE_CLEARCOATMAP
+	uniform sampler2D clearcoatMap;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	uniform sampler2D clearcoatNormalMap;
+	uniform vec2 clearcoatNormalScale;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	uniform sampler2D clearcoatRoughnessMap;
+#endif`,i0=`#ifdef USE_IRIDESCENCEMAP
+	uniform sampler2D iridescenceMap;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	uniform sampler2D iridescenceThicknessMap;
+#endif`,r0=`#ifdef OPAQUE
+diffuseColor.a = 1.0;
+#endif
+#ifdef USE_TRANSMISSION
+diffuseColor.a *= material.transmissionAlpha;
+#endif
+gl_FragColor = vec4( outgoingLight, diffuseColor.a );`,s0=`vec3 packNormalToRGB( const in vec3 normal ) {
+	return normalize( normal ) * 0.5 + 0.5;
+}
+vec3 unpackRGBToNormal( const in vec3 rgb ) {
+	return 2.0 * rgb.xyz - 1.0;
+}
+const float PackUpscale = 256. / 255.;const float UnpackDownscale = 255. / 256.;const float ShiftRight8 = 1. / 256.;
+const float Inv255 = 1. / 255.;
+const vec4 PackFactors = vec4( 1.0, 256.0, 256.0 * 256.0, 256.0 * 256.0 * 256.0 );
+const vec2 UnpackFactors2 = vec2( UnpackDownscale, 1.0 / PackFactors.g );
+const vec3 UnpackFactors3 = vec3( UnpackDownscale / PackFactors.rg, 1.0 / PackFactors.b );
+const vec4 UnpackFactors4 = vec4( UnpackDownscale / PackFactors.rgb, 1.0 / PackFactors.a );
+vec4 packDepthToRGBA( const in float v ) {
+	if( v <= 0.0 )
+		return vec4( 0., 0., 0., 0. );
+	if( v >= 1.0 )
+		return vec4( 1., 1., 1., 1. );
+	float vuf;
+	float af = modf( v * PackFactors.a, vuf );
+	float bf = modf( vuf * ShiftRight8, vuf );
+	float gf = modf( vuf * ShiftRight8, vuf );
+	return vec4( vuf * Inv255, gf * PackUpscale, bf * PackUpscale, af );
+}
+vec3 packDepthToRGB( const in float v ) {
+	if( v <= 0.0 )
+		return vec3( 0., 0., 0. );
+	if( v >= 1.0 )
+		return vec3( 1., 1., 1. );
+	float vuf;
+	float bf = modf( v * PackFactors.b, vuf );
+	float gf = modf( vuf * ShiftRight8, vuf );
+	return vec3( vuf * Inv255, gf * PackUpscale, bf );
+}
+vec2 packDepthToRG( const in float v ) {
+	if( v <= 0.0 )
+		return vec2( 0., 0. );
+	if( v >= 1.0 )
+		return vec2( 1., 1. );
+	float vuf;
+	float gf = modf( v * 256., vuf );
+	return vec2( vuf * Inv255, gf );
+}
+float unpackRGBAToDepth( const in vec4 v ) {
+	return dot( v, UnpackFactors4 );
+}
+float unpackRGBToDepth( const in vec3 v ) {
+	return dot( v, UnpackFactors3 );
+}
+float unpackRGToDepth( const in vec2 v ) {
+	return v.r * UnpackFactors2.r + v.g * UnpackFactors2.g;
+}
+vec4 pack2HalfToRGBA( const in vec2 v ) {
+	vec4 r = vec4( v.x, fract( v.x * 255.0 ), v.y, fract( v.y * 255.0 ) );
+	return vec4( r.x - r.y / 255.0, r.y, r.z - r.w / 255.0, r.w );
+}
+vec2 unpackRGBATo2Half( const in vec4 v ) {
+	return vec2( v.x + ( v.y / 255.0 ), v.z + ( v.w / 255.0 ) );
+}
+float viewZToOrthographicDepth( const in float viewZ, const in float near, const in float far ) {
+	return ( viewZ + near ) / ( near - far );
+}
+float orthographicDepthToViewZ( const in float depth, const in float near, const in float far ) {
+	#ifdef USE_REVERSED_DEPTH_BUFFER
+	
+		return depth * ( far - near ) - far;
+	#else
+		return depth * ( near - far ) - near;
+	#endif
+}
+float viewZToPerspectiveDepth( const in float viewZ, const in float near, const in float far ) {
+	return ( ( near + viewZ ) * far ) / ( ( far - near ) * viewZ );
+}
+float perspectiveDepthToViewZ( const in float depth, const in float near, const in float far ) {
+	
+	#ifdef USE_REVERSED_DEPTH_BUFFER
+		return ( near * far ) / ( ( near - far ) * depth - near );
+	#else
+		return ( near * far ) / ( ( far - near ) * depth - far );
+	#endif
+}`,a0=`#ifdef PREMULTIPLIED_ALPHA
+	gl_FragColor.rgb *= gl_FragColor.a;
+#endif`,o0=`vec4 mvPosition = vec4( transformed, 1.0 );
+#ifdef USE_BATCHING
+	mvPosition = batchingMatrix * mvPosition;
+#endif
+#ifdef USE_INSTANCING
+	mvPosition = instanceMatrix * mvPosition;
+#endif
+mvPosition = modelViewMatrix * mvPosition;
+gl_Position = projectionMatrix * mvPosition;`,l0=`#ifdef DITHERING
+	gl_FragColor.rgb = dithering( gl_FragColor.rgb );
+#endif`,c0=`#ifdef DITHERING
+	vec3 dithering( vec3 color ) {
+		float grid_position = rand( gl_FragCoord.xy );
+		vec3 dither_shift_RGB = vec3( 0.25 / 255.0, -0.25 / 255.0, 0.25 / 255.0 );
+		dither_shift_RGB = mix( 2.0 * dither_shift_RGB, -2.0 * dither_shift_RGB, grid_position );
+		return color + dither_shift_RGB;
+	}
+#endif`,u0=`float roughnessFactor = roughness;
+#ifdef USE_ROUGHNESSMAP
+	vec4 texelRoughness = texture2D( roughnessMap, vRoughnessMapUv );
+	roughnessFactor *= texelRoughness.g;
+#endif`,f0=`#ifdef USE_ROUGHNESSMAP
+	uniform sampler2D roughnessMap;
+#endif`,d0=`#if NUM_SPOT_LIGHT_COORDS > 0
+	varying vec4 vSpotLightCoord[ NUM_SPOT_LIGHT_COORDS ];
+#endif
+#if NUM_SPOT_LIGHT_MAPS > 0
+	uniform sampler2D spotLightMap[ NUM_SPOT_LIGHT_MAPS ];
+#endif
+#ifdef USE_SHADOWMAP
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		#define SUN_LIGHT_CASCADES 2
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform sampler2DShadow sunShadowMap[ NUM_SUN_LIGHT_SHADOWS ];
+		#else
+			uniform sampler2D sunShadowMap[ NUM_SUN_LIGHT_SHADOWS ];
+		#endif
+		uniform mat4 sunShadowMatrix[ NUM_SUN_LIGHT_SHADOWS * SUN_LIGHT_CASCADES ];
+		uniform vec4 sunShadowCascade[ NUM_SUN_LIGHT_SHADOWS * SUN_LIGHT_CASCADES ];
+		varying vec4 vSunShadowWorldPosition;
+		varying vec3 vSunShadowWorldNormal;
+		struct SunLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SunLightShadow sunLightShadows[ NUM_SUN_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform sampler2DShadow directionalShadowMap[ NUM_DIR_LIGHT_SHADOWS ];
+		#else
+			uniform sampler2D directionalShadowMap[ NUM_DIR_LIGHT_SHADOWS ];
+		#endif
+		varying vec4 vDirectionalShadowCoord[ NUM_DIR_LIGHT_SHADOWS ];
+		struct DirectionalLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform DirectionalLightShadow directionalLightShadows[ NUM_DIR_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform sampler2DShadow spotShadowMap[ NUM_SPOT_LIGHT_SHADOWS ];
+		#else
+			uniform sampler2D spotShadowMap[ NUM_SPOT_LIGHT_SHADOWS ];
+		#endif
+		struct SpotLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SpotLightShadow spotLightShadows[ NUM_SPOT_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform samplerCubeShadow pointShadowMap[ NUM_POINT_LIGHT_SHADOWS ];
+		#elif defined( SHADOWMAP_TYPE_BASIC )
+			uniform samplerCube pointShadowMap[ NUM_POINT_LIGHT_SHADOWS ];
+		#endif
+		varying vec4 vPointShadowCoord[ NUM_POINT_LIGHT_SHADOWS ];
+		struct PointLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+			float shadowCameraNear;
+			float shadowCameraFar;
+		};
+		uniform PointLightShadow pointLightShadows[ NUM_POINT_LIGHT_SHADOWS ];
+	#endif
+	#if defined( SHADOWMAP_TYPE_PCF )
+		float interleavedGradientNoise( vec2 position ) {
+			return fract( 52.9829189 * fract( dot( position, vec2( 0.06711056, 0.00583715 ) ) ) );
+		}
+		vec2 vogelDiskSample( int sampleIndex, int samplesCount, float phi ) {
+			const float goldenAngle = 2.399963229728653;
+			float r = sqrt( ( float( sampleIndex ) + 0.5 ) / float( samplesCount ) );
+			float theta = float( sampleIndex ) * goldenAngle + phi;
+			return vec2( cos( theta ), sin( theta ) ) * r;
+		}
+	#endif
+	#if defined( SHADOWMAP_TYPE_PCF )
+		float getShadow( sampler2DShadow shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+			float shadow = 1.0;
+			shadowCoord.xyz /= shadowCoord.w;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				shadowCoord.z -= shadowBias;
+			#else
+				shadowCoord.z += shadowBias;
+			#endif
+			bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+			bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+			if ( frustumTest ) {
+				vec2 texelSize = vec2( 1.0 ) / shadowMapSize;
+				vec2 radius = shadowRadius * texelSize;
+				float phi = interleavedGradientNoise( gl_FragCoord.xy ) * PI2;
+				shadow = (
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 0, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 1, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 2, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 3, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 4, 5, phi ) * radius, shadowCoord.z ) )
+				) * 0.2;
+			}
+			return mix( 1.0, shadow, shadowIntensity );
+		}
+	#elif defined( SHADOWMAP_TYPE_VSM )
+		float getShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+			float shadow = 1.0;
+			shadowCoord.xyz /= shadowCoord.w;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				shadowCoord.z -= shadowBias;
+			#else
+				shadowCoord.z += shadowBias;
+			#endif
+			bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+			bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+			if ( frustumTest ) {
+				vec2 distribution = texture2D( shadowMap, shadowCoord.xy ).rg;
+				float mean = distribution.x;
+				float variance = distribution.y * distribution.y;
+				#ifdef USE_REVERSED_DEPTH_BUFFER
+					float hard_shadow = step( mean, shadowCoord.z );
+				#else
+					float hard_shadow = step( shadowCoord.z, mean );
+				#endif
+				
+				if ( hard_shadow == 1.0 ) {
+					shadow = 1.0;
+				} else {
+					variance = max( variance, 0.0000001 );
+					float d = shadowCoord.z - mean;
+					float p_max = variance / ( variance + d * d );
+					p_max = clamp( ( p_max - 0.3 ) / 0.65, 0.0, 1.0 );
+					shadow = max( hard_shadow, p_max );
+				}
+			}
+			return mix( 1.0, shadow, shadowIntensity );
+		}
+	#else
+		float getShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+			float shadow = 1.0;
+			shadowCoord.xyz /= shadowCoord.w;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				shadowCoord.z -= shadowBias;
+			#else
+				shadowCoord.z += shadowBias;
+			#endif
+			bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+			bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+			if ( frustumTest ) {
+				float depth = texture2D( shadowMap, shadowCoord.xy ).r;
+				#ifdef USE_REVERSED_DEPTH_BUFFER
+					shadow = step( depth, shadowCoord.z );
+				#else
+					shadow = step( shadowCoord.z, depth );
+				#endif
+			}
+			return mix( 1.0, shadow, shadowIntensity );
+		}
+	#endif
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		float getSunShadow(
+			#if defined( SHADOWMAP_TYPE_PCF )
+				sampler2DShadow shadowMap,
+			#else
+				sampler2D shadowMap,
+			#endif
+			SunLightShadow sunLightShadow,
+			int shadowIndex
+		) {
+			vec4 shadowWorldPosition = vec4( vSunShadowWorldPosition.xyz + vSunShadowWorldNormal * sunLightShadow.shadowNormalBias, 1.0 );
+			float viewDepth = vSunShadowWorldPosition.w;
+			int cascadeOffset = shadowIndex * SUN_LIGHT_CASCADES;
+			float shadow = 1.0;
+			for ( int i = SUN_LIGHT_CASCADES - 1; i >= 0; i -- ) {
+				vec4 cascade = sunShadowCascade[ cascadeOffset + i ];
+				if ( viewDepth >= cascade.x && viewDepth < cascade.y ) {
+					float cascadeShadow = getShadow(
+						shadowMap,
+						sunLightShadow.shadowMapSize,
+						sunLightShadow.shadowIntensity,
+						sunLightShadow.shadowBias,
+						sunLightShadow.shadowRadius,
+						sunShadowMatrix[ cascadeOffset + i ] * shadowWorldPosition
+					);
+					shadow = mix( cascadeShadow, shadow, smoothstep( cascade.z, cascade.y, viewDepth ) );
+				}
+			}
+			return shadow;
+		}
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+	#if defined( SHADOWMAP_TYPE_PCF )
+	float getPointShadow( samplerCubeShadow shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord, float shadowCameraNear, float shadowCameraFar ) {
+		float shadow = 1.0;
+		vec3 lightToPosition = shadowCoord.xyz;
+		vec3 bd3D = normalize( lightToPosition );
+		vec3 absVec = abs( lightToPosition );
+		float viewSpaceZ = max( max( absVec.x, absVec.y ), absVec.z );
+		if ( viewSpaceZ - shadowCameraFar <= 0.0 && viewSpaceZ - shadowCameraNear >= 0.0 ) {
+			float lightDistance = length( lightToPosition );
+			float depthRange = shadowCameraFar - shadowCameraNear;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				float depthA = - shadowCameraNear / depthRange - shadowBias;
+				float depthB = shadowCameraNear * shadowCameraFar / ( depthRange * lightDistance );
+			#else
+				float depthA = shadowCameraFar / depthRange + shadowBias;
+				float depthB = - shadowCameraNear * shadowCameraFar / ( depthRange * lightDistance );
+			#endif
+			float texelSize = shadowRadius / shadowMapSize.x;
+			vec3 absDir = abs( bd3D );
+			vec3 tangent = absDir.x > absDir.z ? vec3( 0.0, 1.0, 0.0 ) : vec3( 1.0, 0.0, 0.0 );
+			tangent = normalize( cross( bd3D, tangent ) );
+			vec3 bitangent = cross( bd3D, tangent );
+			float phi = interleavedGradientNoise( gl_FragCoord.xy ) * PI2;
+			shadow = 0.0;
+			for ( int i = 0; i < 5; i ++ ) {
+				vec2 offset = vogelDiskSample( i, 5, phi );
+				vec3 direction = bd3D + ( tangent * offset.x + bitangent * offset.y ) * texelSize;
+				vec3 absDirection = abs( direction );
+				float dp = depthA + depthB / max( max( absDirection.x, absDirection.y ), absDirection.z );
+				shadow += texture( shadowMap, vec4( direction, dp ) );
+			}
+			shadow *= 0.2;
+		}
+		return mix( 1.0, shadow, shadowIntensity );
+	}
+	#elif defined( SHADOWMAP_TYPE_BASIC )
+	float getPointShadow( samplerCube shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord, float shadowCameraNear, float shadowCameraFar ) {
+		float shadow = 1.0;
+		vec3 lightToPosition = shadowCoord.xyz;
+		vec3 absVec = abs( lightToPosition );
+		float viewSpaceZ = max( max( absVec.x, absVec.y ), absVec.z );
+		if ( viewSpaceZ - shadowCameraFar <= 0.0 && viewSpaceZ - shadowCameraNear >= 0.0 ) {
+			float dp = ( shadowCameraFar * ( viewSpaceZ - shadowCameraNear ) ) / ( viewSpaceZ * ( shadowCameraFar - shadowCameraNear ) );
+			dp += shadowBias;
+			vec3 bd3D = normalize( lightToPosition );
+			float depth = textureCube( shadowMap, bd3D ).r;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				depth = 1.0 - depth;
+			#endif
+			shadow = step( dp, depth );
+		}
+		return mix( 1.0, shadow, shadowIntensity );
+	}
+	#endif
+	#endif
+#endif`,h0=`#if NUM_SPOT_LIGHT_COORDS > 0
+	uniform mat4 spotLightMatrix[ NUM_SPOT_LIGHT_COORDS ];
+	varying vec4 vSpotLightCoord[ NUM_SPOT_LIGHT_COORDS ];
+#endif
+#ifdef USE_SHADOWMAP
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		varying vec4 vSunShadowWorldPosition;
+		varying vec3 vSunShadowWorldNormal;
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		uniform mat4 directionalShadowMatrix[ NUM_DIR_LIGHT_SHADOWS ];
+		varying vec4 vDirectionalShadowCoord[ NUM_DIR_LIGHT_SHADOWS ];
+		struct DirectionalLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform DirectionalLightShadow directionalLightShadows[ NUM_DIR_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+		struct SpotLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SpotLightShadow spotLightShadows[ NUM_SPOT_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		uniform mat4 pointShadowMatrix[ NUM_POINT_LIGHT_SHADOWS ];
+		varying vec4 vPointShadowCoord[ NUM_POINT_LIGHT_SHADOWS ];
+		struct PointLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+			float shadowCameraNear;
+			float shadowCameraFar;
+		};
+		uniform PointLightShadow pointLightShadows[ NUM_POINT_LIGHT_SHADOWS ];
+	#endif
+#endif`,p0=`#if ( defined( USE_SHADOWMAP ) && ( NUM_DIR_LIGHT_SHADOWS > 0 || NUM_SUN_LIGHT_SHADOWS > 0 || NUM_POINT_LIGHT_SHADOWS > 0 ) ) || ( NUM_SPOT_LIGHT_COORDS > 0 )
+	#ifdef HAS_NORMAL
+		vec3 shadowWorldNormal = transformNormalByInverseViewMatrix( transformedNormal, viewMatrix );
+	#else
+		vec3 shadowWorldNormal = vec3( 0.0 );
+	#endif
+	vec4 shadowWorldPosition;
+#endif
+#if defined( USE_SHADOWMAP )
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		vSunShadowWorldPosition = vec4( worldPosition.xyz, - mvPosition.z );
+		vSunShadowWorldNormal = shadowWorldNormal;
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+			shadowWorldPosition = worldPosition + vec4( shadowWorldNormal * directionalLightShadows[ i ].shadowNormalBias, 0 );
+			vDirectionalShadowCoord[ i ] = directionalShadowMatrix[ i ] * shadowWorldPosition;
+		}
+		#pragma unroll_loop_end
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_POINT_LIGHT_SHADOWS; i ++ ) {
+			shadowWorldPosition = worldPosition + vec4( shadowWorldNormal * pointLightShadows[ i ].shadowNormalBias, 0 );
+			vPointShadowCoord[ i ] = pointShadowMatrix[ i ] * shadowWorldPosition;
+		}
+		#pragma unroll_loop_end
+	#endif
+#endif
+#if NUM_SPOT_LIGHT_COORDS > 0
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHT_COORDS; i ++ ) {
+		shadowWorldPosition = worldPosition;
+		#if ( defined( USE_SHADOWMAP ) && UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+			shadowWorldPosition.xyz += shadowWorldNormal * spotLightShadows[ i ].shadowNormalBias;
+		#endif
+		vSpotLightCoord[ i ] = spotLightMatrix[ i ] * shadowWorldPosition;
+	}
+	#pragma unroll_loop_end
+#endif`,m0=`float getShadowMask() {
+	float shadow = 1.0;
+	#ifdef USE_SHADOWMAP
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+	SunLightShadow sunLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SUN_LIGHT_SHADOWS; i ++ ) {
+		sunLight = sunLightShadows[ i ];
+		shadow *= receiveShadow ? getSunShadow( sunShadowMap[ i ], sunLight, UNROLLED_LOOP_INDEX ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+	DirectionalLightShadow directionalLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+		directionalLight = directionalLightShadows[ i ];
+		shadow *= receiveShadow ? getShadow( directionalShadowMap[ i ], directionalLight.shadowMapSize, directionalLight.shadowIntensity, directionalLight.shadowBias, directionalLight.shadowRadius, vDirectionalShadowCoord[ i ] ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+	SpotLightShadow spotLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHT_SHADOWS; i ++ ) {
+		spotLight = spotLightShadows[ i ];
+		shadow *= receiveShadow ? getShadow( spotShadowMap[ i ], spotLight.shadowMapSize, spotLight.shadowIntensity, spotLight.shadowBias, spotLight.shadowRadius, vSpotLightCoord[ i ] ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0 && ( defined( SHADOWMAP_TYPE_PCF ) || defined( SHADOWMAP_TYPE_BASIC ) )
+	PointLightShadow pointLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_POINT_LIGHT_SHADOWS; i ++ ) {
+		pointLight = pointLightShadows[ i ];
+		shadow *= receiveShadow ? getPointShadow( pointShadowMap[ i ], pointLight.shadowMapSize, pointLight.shadowIntensity, pointLight.shadowBias, pointLight.shadowRadius, vPointShadowCoord[ i ], pointLight.shadowCameraNear, pointLight.shadowCameraFar ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#endif
+	return shadow;
+}`,g0=`#ifdef USE_SKINNING
+	mat4 boneMatX = getBoneMatrix( skinIndex.x );
+	mat4 boneMatY = getBoneMatrix( skinIndex.y );
+	mat4 boneMatZ = getBoneMatrix( skinIndex.z );
+	mat4 boneMatW = getBoneMatrix( skinIndex.w );
+#endif`,_0=`#ifdef USE_SKINNING
+	uniform mat4 bindMatrix;
+	uniform mat4 bindMatrixInverse;
+	uniform highp sampler2D boneTexture;
+	mat4 getBoneMatrix( const in float i ) {
+		int size = textureSize( boneTexture, 0 ).x;
+		int j = int( i ) * 4;
+		int x = j % size;
+		int y = j / size;
+		vec4 v1 = texelFetch( boneTexture, ivec2( x, y ), 0 );
+		vec4 v2 = texelFetch( boneTexture, ivec2( x + 1, y ), 0 );
+		vec4 v3 = texelFetch( boneTexture, ivec2( x + 2, y ), 0 );
+		vec4 v4 = texelFetch( boneTexture, ivec2( x + 3, y ), 0 );
+		return mat4( v1, v2, v3, v4 );
+	}
+#endif`,v0=`#ifdef USE_SKINNING
+	vec4 skinVertex = bindMatrix * vec4( transformed, 1.0 );
+	vec4 skinned = vec4( 0.0 );
+	skinned += boneMatX * skinVertex * skinWeight.x;
+	skinned += boneMatY * skinVertex * skinWeight.y;
+	skinned += boneMatZ * skinVertex * skinWeight.z;
+	skinned += boneMatW * skinVertex * skinWeight.w;
+	transformed = ( bindMatrixInverse * skinned ).xyz;
+#endif`,x0=`#ifdef USE_SKINNING
+	mat4 skinMatrix = mat4( 0.0 );
+	skinMatrix += skinWeight.x * boneMatX;
+	skinMatrix += skinWeight.y * boneMatY;
+	skinMatrix += skinWeight.z * boneMatZ;
+	skinMatrix += skinWeight.w * boneMatW;
+	skinMatrix = bindMatrixInverse * skinMatrix * bindMatrix;
+	objectNormal = vec4( skinMatrix * vec4( objectNormal, 0.0 ) ).xyz;
+	#ifdef USE_TANGENT
+		objectTangent = vec4( skinMatrix * vec4( objectTangent, 0.0 ) ).xyz;
+	#endif
+#endif`,S0=`float specularStrength;
+#ifdef USE_SPECULARMAP
+	vec4 texelSpecular = texture2D( specularMap, vSpecularMapUv );
+	specularStrength = texelSpecular.r;
+#else
+	specularStrength = 1.0;
+#endif`,M0=`#ifdef USE_SPECULARMAP
+	uniform sampler2D specularMap;
+#endif`,y0=`#if defined( TONE_MAPPING )
+	gl_FragColor.rgb = toneMapping( gl_FragColor.rgb );
+#endif`,b0=`#ifndef saturate
+#define saturate( a ) clamp( a, 0.0, 1.0 )
+#endif
+uniform float toneMappingExposure;
+vec3 LinearToneMapping( vec3 color ) {
+	return saturate( toneMappingExposure * color );
+}
+vec3 ReinhardToneMapping( vec3 color ) {
+	color *= toneMappingExposure;
+	return saturate( color / ( vec3( 1.0 ) + color ) );
+}
+vec3 CineonToneMapping( vec3 color ) {
+	color *= toneMappingExposure;
+	color = max( vec3( 0.0 ), color - 0.004 );
+	return pow( ( color * ( 6.2 * color + 0.5 ) ) / ( color * ( 6.2 * color + 1.7 ) + 0.06 ), vec3( 2.2 ) );
+}
+vec3 RRTAndODTFit( vec3 v ) {
+	vec3 a = v * ( v + 0.0245786 ) - 0.000090537;
+	vec3 b = v * ( 0.983729 * v + 0.4329510 ) + 0.238081;
+	return a / b;
+}
+vec3 ACESFilmicToneMapping( vec3 color ) {
+	const mat3 ACESInputMat = mat3(
+		vec3( 0.59719, 0.07600, 0.02840 ),		vec3( 0.35458, 0.90834, 0.13383 ),
+		vec3( 0.04823, 0.01566, 0.83777 )
+	);
+	const mat3 ACESOutputMat = mat3(
+		vec3(  1.60475, -0.10208, -0.00327 ),		vec3( -0.53108,  1.10813, -0.07276 ),
+		vec3( -0.07367, -0.00605,  1.07602 )
+	);
+	color *= toneMappingExposure / 0.6;
+	color = ACESInputMat * color;
+	color = RRTAndODTFit( color );
+	color = ACESOutputMat * color;
+	return saturate( color );
+}
+const mat3 LINEAR_REC2020_TO_LINEAR_SRGB = mat3(
+	vec3( 1.6605, - 0.1246, - 0.0182 ),
+	vec3( - 0.5876, 1.1329, - 0.1006 ),
+	vec3( - 0.0728, - 0.0083, 1.1187 )
+);
+const mat3 LINEAR_SRGB_TO_LINEAR_REC2020 = mat3(
+	vec3( 0.6274, 0.0691, 0.0164 ),
+	vec3( 0.3293, 0.9195, 0.0880 ),
+	vec3( 0.0433, 0.0113, 0.8956 )
+);
+vec3 agxDefaultContrastApprox( vec3 x ) {
+	vec3 x2 = x * x;
+	vec3 x4 = x2 * x2;
+	return + 15.5 * x4 * x2
+		- 40.14 * x4 * x
+		+ 31.96 * x4
+		- 6.868 * x2 * x
+		+ 0.4298 * x2
+		+ 0.1191 * x
+		- 0.00232;
+}
+vec3 AgXToneMapping( vec3 color ) {
+	const mat3 AgXInsetMatrix = mat3(
+		vec3( 0.856627153315983, 0.137318972929847, 0.11189821299995 ),
+		vec3( 0.0951212405381588, 0.761241990602591, 0.0767994186031903 ),
+		vec3( 0.0482516061458583, 0.101439036467562, 0.811302368396859 )
+	);
+	const mat3 AgXOutsetMatrix = mat3(
+		vec3( 1.1271005818144368, - 0.1413297634984383, - 0.14132976349843826 ),
+		vec3( - 0.11060664309660323, 1.157823702216272, - 0.11060664309660294 ),
+		vec3( - 0.016493938717834573, - 0.016493938717834257, 1.2519364065950405 )
+	);
+	const float AgxMinEv = - 12.47393;	const float AgxMaxEv = 4.026069;
+	color *= toneMappingExposure;
+	color = LINEAR_SRGB_TO_LINEAR_REC2020 * color;
+	color = AgXInsetMatrix * color;
+	color = max( color, 1e-10 );	color = log2( color );
+	color = ( color - AgxMinEv ) / ( AgxMaxEv - AgxMinEv );
+	color = clamp( color, 0.0, 1.0 );
+	color = agxDefaultContrastApprox( color );
+	color = AgXOutsetMatrix * color;
+	color = pow( max( vec3( 0.0 ), color ), vec3( 2.2 ) );
+	color = LINEAR_REC2020_TO_LINEAR_SRGB * color;
+	color = clamp( color, 0.0, 1.0 );
+	return color;
+}
+vec3 NeutralToneMapping( vec3 color ) {
+	const float StartCompression = 0.8 - 0.04;
+	const float Desaturation = 0.15;
+	color *= toneMappingExposure;
+	float x = min( color.r, min( color.g, color.b ) );
+	float offset = x < 0.08 ? x - 6.25 * x * x : 0.04;
+	color -= offset;
+	float peak = max( color.r, max( color.g, color.b ) );
+	if ( peak < StartCompression ) return color;
+	float d = 1. - StartCompression;
+	float newPeak = 1. - d * d / ( peak + d - StartCompression );
+	color *= newPeak / peak;
+	float g = 1. - 1. / ( Desaturation * ( peak - newPeak ) + 1. );
+	return mix( color, vec3( newPeak ), g );
+}
+vec3 CustomToneMapping( vec3 color ) { return color; }`,E0=`#ifdef USE_TRANSMISSION
+	material.transmission = transmission;
+	material.transmissionAlpha = 1.0;
+	material.thickness = thickness;
+	material.attenuationDistance = attenuationDistance;
+	material.attenuationColor = attenuationColor;
+	#ifdef USE_TRANSMISSIONMAP
+		material.transmission *= texture2D( transmissionMap, vTransmissionMapUv ).r;
+	#endif
+	#ifdef USE_THICKNESSMAP
+		material.thickness *= texture2D( thicknessMap, vThicknessMapUv ).g;
+	#endif
+	vec3 pos = vWorldPosition;
+	vec3 v = normalize( cameraPosition - pos );
+	vec3 n = transformNormalByInverseViewMatrix( normal, viewMatrix );
+	vec4 transmitted = getIBLVolumeRefraction(
+		n, v, material.roughness, material.diffuseContribution, material.specularColorBlended, material.specularF90,
+		pos, modelMatrix, viewMatrix, projectionMatrix, material.dispersion, material.ior, material.thickness,
+		material.attenuationColor, material.attenuationDistance );
+	material.transmissionAlpha = mix( material.transmissionAlpha, transmitted.a, material.transmission );
+	totalDiffuse = mix( totalDiffuse, transmitted.rgb, material.transmission );
+#endif`,T0=`#ifdef USE_TRANSMISSION
+	uniform float transmission;
+	uniform float thickness;
+	uniform float attenuationDistance;
+	uniform vec3 attenuationColor;
+	#ifdef USE_TRANSMISSIONMAP
+		uniform sampler2D transmissionMap;
+	#endif
+	#ifdef USE_THICKNESSMAP
+		uniform sampler2D thicknessMap;
+	#endif
+	uniform vec2 transmissionSamplerSize;
+	uniform sampler2D transmissionSamplerMap;
+	uniform mat4 modelMatrix;
+	uniform mat4 projectionMatrix;
+	varying vec3 vWorldPosition;
+	float w0( float a ) {
+		return ( 1.0 / 6.0 ) * ( a * ( a * ( - a + 3.0 ) - 3.0 ) + 1.0 );
+	}
+	float w1( float a ) {
+		return ( 1.0 / 6.0 ) * ( a *  a * ( 3.0 * a - 6.0 ) + 4.0 );
+	}
+	float w2( float a ){
+		return ( 1.0 / 6.0 ) * ( a * ( a * ( - 3.0 * a + 3.0 ) + 3.0 ) + 1.0 );
+	}
+	float w3( float a ) {
+		return ( 1.0 / 6.0 ) * ( a * a * a );
+	}
+	float g0( float a ) {
+		return w0( a ) + w1( a );
+	}
+	float g1( float a ) {
+		return w2( a ) + w3( a );
+	}
+	float h0( float a ) {
+		return - 1.0 + w1( a ) / ( w0( a ) + w1( a ) );
+	}
+	float h1( float a ) {
+		return 1.0 + w3( a ) / ( w2( a ) + w3( a ) );
+	}
+	vec4 bicubic( sampler2D tex, vec2 uv, vec4 texelSize, float lod ) {
+		uv = uv * texelSize.zw + 0.5;
+		vec2 iuv = floor( uv );
+		vec2 fuv = fract( uv );
+		float g0x = g0( fuv.x );
+		float g1x = g1( fuv.x );
+		float h0x = h0( fuv.x );
+		float h1x = h1( fuv.x );
+		float h0y = h0( fuv.y );
+		float h1y = h1( fuv.y );
+		vec2 p0 = ( vec2( iuv.x + h0x, iuv.y + h0y ) - 0.5 ) * texelSize.xy;
+		vec2 p1 = ( vec2( iuv.x + h1x, iuv.y + h0y ) - 0.5 ) * texelSize.xy;
+		vec2 p2 = ( vec2( iuv.x + h0x, iuv.y + h1y ) - 0.5 ) * texelSize.xy;
+		vec2 p3 = ( vec2( iuv.x + h1x, iuv.y + h1y ) - 0.5 ) * texelSize.xy;
+		return g0( fuv.y ) * ( g0x * textureLod( tex, p0, lod ) + g1x * textureLod( tex, p1, lod ) ) +
+			g1( fuv.y ) * ( g0x * textureLod( tex, p2, lod ) + g1x * textureLod( tex, p3, lod ) );
+	}
+	vec4 textureBicubic( sampler2D sampler, vec2 uv, float lod ) {
+		vec2 fLodSize = vec2( textureSize( sampler, int( lod ) ) );
+		vec2 cLodSize = vec2( textureSize( sampler, int( lod + 1.0 ) ) );
+		vec2 fLodSizeInv = 1.0 / fLodSize;
+		vec2 cLodSizeInv = 1.0 / cLodSize;
+		vec4 fSample = bicubic( sampler, uv, vec4( fLodSizeInv, fLodSize ), floor( lod ) );
+		vec4 cSample = bicubic( sampler, uv, vec4( cLodSizeInv, cLodSize ), ceil( lod ) );
+		return mix( fSample, cSample, fract( lod ) );
+	}
+	vec3 getVolumeTransmissionRay( const in vec3 n, const in vec3 v, const in float thickness, const in float ior, const in mat4 modelMatrix ) {
+		vec3 refractionVector = refract( - v, normalize( n ), 1.0 / ior );
+		vec3 modelScale;
+		modelScale.x = length( vec3( modelMatrix[ 0 ].xyz ) );
+		modelScale.y = length( vec3( modelMatrix[ 1 ].xyz ) );
+		modelScale.z = length( vec3( modelMatrix[ 2 ].xyz ) );
+		return normalize( refractionVector ) * thickness * modelScale;
+	}
+	float applyIorToRoughness( const in float roughness, const in float ior ) {
+		return roughness * clamp( ior * 2.0 - 2.0, 0.0, 1.0 );
+	}
+	vec4 getTransmissionSample( const in vec2 fragCoord, const in float roughness, const in float ior ) {
+		float lod = log2( transmissionSamplerSize.x ) * applyIorToRoughness( roughness, ior );
+		return textureBicubic( transmissionSamplerMap, fragCoord.xy, lod );
+	}
+	vec3 volumeAttenuation( const in float transmissionDistance, const in vec3 attenuationColor, const in float attenuationDistance ) {
+		if ( isinf( attenuationDistance ) ) {
+			return vec3( 1.0 );
+		} else {
+			vec3 attenuationCoefficient = -log( attenuationColor ) / attenuationDistance;
+			vec3 transmittance = exp( - attenuationCoefficient * transmissionDistance );			return transmittance;
+		}
+	}
+	vec4 getIBLVolumeRefraction( const in vec3 n, const in vec3 v, const in float roughness, const in vec3 diffuseColor,
+		const in vec3 specularColor, const in float specularF90, const in vec3 position, const in mat4 modelMatrix,
+		const in mat4 viewMatrix, const in mat4 projMatrix, const in float dispersion, const in float ior, const in float thickness,
+		const in vec3 attenuationColor, const in float attenuationDistance ) {
+		vec4 transmittedLight;
+		vec3 transmittance;
+		#ifdef USE_DISPERSION
+			float halfSpread = ( ior - 1.0 ) * 0.025 * dispersion;
+			vec3 iors = vec3( ior - halfSpread, ior, ior + halfSpread );
+			for ( int i = 0; i < 3; i ++ ) {
+				vec3 transmissionRay = getVolumeTransmissionRay( n, v, thickness, iors[ i ], modelMatrix );
+				vec3 refractedRayExit = position + transmissionRay;
+				vec4 ndcPos = projMatrix * viewMatrix * vec4( refractedRayExit, 1.0 );
+				vec2 refractionCoords = ndcPos.xy / ndcPos.w;
+				refractionCoords += 1.0;
+				refractionCoords /= 2.0;
+				vec4 transmissionSample = getTransmissionSample( refractionCoords, roughness, iors[ i ] );
+				transmittedLight[ i ] = transmissionSample[ i ];
+				transmittedLight.a += transmissionSample.a;
+				transmittance[ i ] = diffuseColor[ i ] * volumeAttenuation( length( transmissionRay ), attenuationColor, attenuationDistance )[ i ];
+			}
+			transmittedLight.a /= 3.0;
+		#else
+			vec3 transmissionRay = getVolumeTransmissionRay( n, v, thickness, ior, modelMatrix );
+			vec3 refractedRayExit = position + transmissionRay;
+			vec4 ndcPos = projMatrix * viewMatrix * vec4( refractedRayExit, 1.0 );
+			vec2 refractionCoords = ndcPos.xy / ndcPos.w;
+			refractionCoords += 1.0;
+			refractionCoords /= 2.0;
+			transmittedLight = getTransmissionSample( refractionCoords, roughness, ior );
+			transmittance = diffuseColor * volumeAttenuation( length( transmissionRay ), attenuationColor, attenuationDistance );
+		#endif
+		vec3 attenuatedColor = transmittance * transmittedLight.rgb;
+		vec3 F = EnvironmentBRDF( n, v, specularColor, specularF90, roughness );
+		float transmittanceFactor = ( transmittance.r + transmittance.g + transmittance.b ) / 3.0;
+		return vec4( ( 1.0 - F ) * attenuatedColor, 1.0 - ( 1.0 - transmittedLight.a ) * transmittanceFactor );
+	}
+#endif`,A0=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	varying vec2 vUv;
+#endif
+#ifdef USE_MAP
+	varying vec2 vMapUv;
+#endif
+#ifdef USE_ALPHAMAP
+	varying vec2 vAlphaMapUv;
+#endif
+#ifdef USE_LIGHTMAP
+	varying vec2 vLightMapUv;
+#endif
+#ifdef USE_AOMAP
+	varying vec2 vAoMapUv;
+#endif
+#ifdef USE_BUMPMAP
+	varying vec2 vBumpMapUv;
+#endif
+#ifdef USE_NORMALMAP
+	varying vec2 vNormalMapUv;
+#endif
+#ifdef USE_EMISSIVEMAP
+	varying vec2 vEmissiveMapUv;
+#endif
+#ifdef USE_METALNESSMAP
+	varying vec2 vMetalnessMapUv;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	varying vec2 vRoughnessMapUv;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESSMAP
+	varying vec2 vDiffuseRoughnessMapUv;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	varying vec2 vAnisotropyMapUv;
+#endif
+#ifdef USE_CLEARCOATMAP
+	varying vec2 vClearcoatMapUv;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	varying vec2 vClearcoatNormalMapUv;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	varying vec2 vClearcoatRoughnessMapUv;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	varying vec2 vIridescenceMapUv;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	varying vec2 vIridescenceThicknessMapUv;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	varying vec2 vSheenColorMapUv;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	varying vec2 vSheenRoughnessMapUv;
+#endif
+#ifdef USE_SPECULARMAP
+	varying vec2 vSpecularMapUv;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	varying vec2 vSpecularColorMapUv;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	varying vec2 vSpecularIntensityMapUv;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	uniform mat3 transmissionMapTransform;
+	varying vec2 vTransmissionMapUv;
+#endif
+#ifdef USE_THICKNESSMAP
+	uniform mat3 thicknessMapTransform;
+	varying vec2 vThicknessMapUv;
+#endif`,w0=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	varying vec2 vUv;
+#endif
+#ifdef USE_MAP
+	uniform mat3 mapTransform;
+	varying vec2 vMapUv;
+#endif
+#ifdef USE_ALPHAMAP
+	uniform mat3 alphaMapTransform;
+	varying vec2 vAlphaMapUv;
+#endif
+#ifdef USE_LIGHTMAP
+	uniform mat3 lightMapTransform;
+	varying vec2 vLightMapUv;
+#endif
+#ifdef USE_AOMAP
+	uniform mat3 aoMapTransform;
+	varying vec2 vAoMapUv;
+#endif
+#ifdef USE_BUMPMAP
+	uniform mat3 bumpMapTransform;
+	varying vec2 vBumpMapUv;
+#endif
+#ifdef USE_NORMALMAP
+	uniform mat3 normalMapTransform;
+	varying vec2 vNormalMapUv;
+#endif
+#ifdef USE_DISPLACEMENTMAP
+	uniform mat3 displacementMapTransform;
+	varying vec2 vDisplacementMapUv;
+#endif
+#ifdef USE_EMISSIVEMAP
+	uniform mat3 emissiveMapTransform;
+	varying vec2 vEmissiveMapUv;
+#endif
+#ifdef USE_METALNESSMAP
+	uniform mat3 metalnessMapTransform;
+	varying vec2 vMetalnessMapUv;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	uniform mat3 roughnessMapTransform;
+	varying vec2 vRoughnessMapUv;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESSMAP
+	uniform mat3 diffuseRoughnessMapTransform;
+	varying vec2 vDiffuseRoughnessMapUv;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	uniform mat3 anisotropyMapTransform;
+	varying vec2 vAnisotropyMapUv;
+#endif
+#ifdef USE_CLEARCOATMAP
+	uniform mat3 clearcoatMapTransform;
+	varying vec2 vClearcoatMapUv;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	uniform mat3 clearcoatNormalMapTransform;
+	varying vec2 vClearcoatNormalMapUv;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	uniform mat3 clearcoatRoughnessMapTransform;
+	varying vec2 vClearcoatRoughnessMapUv;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	uniform mat3 sheenColorMapTransform;
+	varying vec2 vSheenColorMapUv;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	uniform mat3 sheenRoughnessMapTransform;
+	varying vec2 vSheenRoughnessMapUv;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	uniform mat3 iridescenceMapTransform;
+	varying vec2 vIridescenceMapUv;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	uniform mat3 iridescenceThicknessMapTransform;
+	varying vec2 vIridescenceThicknessMapUv;
+#endif
+#ifdef USE_SPECULARMAP
+	uniform mat3 specularMapTransform;
+	varying vec2 vSpecularMapUv;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	uniform mat3 specularColorMapTransform;
+	varying vec2 vSpecularColorMapUv;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	uniform mat3 specularIntensityMapTransform;
+	varying vec2 vSpecularIntensityMapUv;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	uniform mat3 transmissionMapTransform;
+	varying vec2 vTransmissionMapUv;
+#endif
+#ifdef USE_THICKNESSMAP
+	uniform mat3 thicknessMapTransform;
+	varying vec2 vThicknessMapUv;
+#endif`,R0=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	vUv = vec3( uv, 1 ).xy;
+#endif
+#ifdef USE_MAP
+	vMapUv = ( mapTransform * vec3( MAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ALPHAMAP
+	vAlphaMapUv = ( alphaMapTransform * vec3( ALPHAMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_LIGHTMAP
+	vLightMapUv = ( lightMapTransform * vec3( LIGHTMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_AOMAP
+	vAoMapUv = ( aoMapTransform * vec3( AOMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_BUMPMAP
+	vBumpMapUv = ( bumpMapTransform * vec3( BUMPMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_NORMALMAP
+	vNormalMapUv = ( normalMapTransform * vec3( NORMALMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_DISPLACEMENTMAP
+	vDisplacementMapUv = ( displacementMapTransform * vec3( DISPLACEMENTMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_EMISSIVEMAP
+	vEmissiveMapUv = ( emissiveMapTransform * vec3( EMISSIVEMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_METALNESSMAP
+	vMetalnessMapUv = ( metalnessMapTransform * vec3( METALNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	vRoughnessMapUv = ( roughnessMapTransform * vec3( ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESSMAP
+	vDiffuseRoughnessMapUv = ( diffuseRoughnessMapTransform * vec3( DIFFUSE_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	vAnisotropyMapUv = ( anisotropyMapTransform * vec3( ANISOTROPYMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOATMAP
+	vClearcoatMapUv = ( clearcoatMapTransform * vec3( CLEARCOATMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	vClearcoatNormalMapUv = ( clearcoatNormalMapTransform * vec3( CLEARCOAT_NORMALMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	vClearcoatRoughnessMapUv = ( clearcoatRoughnessMapTransform * vec3( CLEARCOAT_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	vIridescenceMapUv = ( iridescenceMapTransform * vec3( IRIDESCENCEMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	vIridescenceThicknessMapUv = ( iridescenceThicknessMapTransform * vec3( IRIDESCENCE_THICKNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	vSheenColorMapUv = ( sheenColorMapTransform * vec3( SHEEN_COLORMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	vSheenRoughnessMapUv = ( sheenRoughnessMapTransform * vec3( SHEEN_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULARMAP
+	vSpecularMapUv = ( specularMapTransform * vec3( SPECULARMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	vSpecularColorMapUv = ( specularColorMapTransform * vec3( SPECULAR_COLORMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	vSpecularIntensityMapUv = ( specularIntensityMapTransform * vec3( SPECULAR_INTENSITYMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	vTransmissionMapUv = ( transmissionMapTransform * vec3( TRANSMISSIONMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_THICKNESSMAP
+	vThicknessMapUv = ( thicknessMapTransform * vec3( THICKNESSMAP_UV, 1 ) ).xy;
+#endif`,C0=`#if defined( USE_ENVMAP ) || defined( DISTANCE ) || defined ( USE_SHADOWMAP ) || defined ( USE_TRANSMISSION ) || NUM_SPOT_LIGHT_COORDS > 0
+	vec4 worldPosition = vec4( transformed, 1.0 );
+	#ifdef USE_BATCHING
+		worldPosition = batchingMatrix * worldPosition;
+	#endif
+	#ifdef USE_INSTANCING
+		worldPosition = instanceMatrix * worldPosition;
+	#endif
+	worldPosition = modelMatrix * worldPosition;
+#endif`;const ke={alphahash_fragment:Lg,alphahash_pars_fragment:Dg,alphamap_fragment:Ig,alphamap_pars_fragment:Ng,alphatest_fragment:Ug,alphatest_pars_fragment:Fg,aomap_fragment:Og,aomap_pars_fragment:Bg,batching_pars_vertex:kg,batching_vertex:zg,begin_vertex:Hg,beginnormal_vertex:Gg,bsdfs:Vg,iridescence_fragment:Wg,bumpmap_pars_fragment:Xg,clipping_planes_fragment:$g,clipping_planes_pars_fragment:qg,clipping_planes_pars_vertex:Yg,clipping_planes_vertex:Kg,color_fragment:Zg,color_pars_fragment:Jg,color_pars_vertex:Qg,color_vertex:jg,common:e_,defaultnormal_vertex:t_,displacementmap_pars_vertex:n_,displacementmap_vertex:i_,emissivemap_fragment:r_,emissivemap_pars_fragment:s_,colorspace_fragment:a_,colorspace_pars_fragment:o_,envmap_fragment:l_,envmap_common_pars_fragment:c_,envmap_pars_fragment:u_,envmap_pars_vertex:f_,envmap_physical_pars_fragment:y_,envmap_vertex:d_,fog_vertex:h_,fog_pars_vertex:p_,fog_fragment:m_,fog_pars_fragment:g_,gradientmap_pars_fragment:__,lightmap_pars_fragment:v_,lights_lambert_fragment:x_,lights_lambert_pars_fragment:S_,lights_pars_begin:M_,lights_toon_fragment:b_,lights_toon_pars_fragment:E_,lights_phong_fragment:T_,lights_phong_pars_fragment:A_,lights_physical_fragment:w_,lights_physical_pars_fragment:R_,lights_fragment_begin:C_,lights_fragment_maps:P_,lights_fragment_end:L_,lightprobes_pars_fragment:D_,logdepthbuf_fragment:I_,logdepthbuf_pars_fragment:N_,logdepthbuf_pars_vertex:U_,logdepthbuf_vertex:F_,map_fragment:O_,map_pars_fragment:B_,map_particle_fragment:k_,map_particle_pars_fragment:z_,metalnessmap_fragment:H_,metalnessmap_pars_fragment:G_,morphinstance_vertex:V_,morphcolor_vertex:W_,morphnormal_vertex:X_,morphtarget_pars_vertex:$_,morphtarget_vertex:q_,normal_fragment_begin:Y_,normal_fragment_maps:K_,normal_pars_fragment:Z_,normal_pars_vertex:J_,normal_vertex:Q_,normalmap_pars_fragment:j_,clearcoat_normal_fragment_begin:e0,clearcoat_normal_fragment_maps:t0,clearcoat_pars_fragment:n0,iridescence_pars_fragment:i0,opaque_fragment:r0,packing:s0,premultiplied_alpha_fragment:a0,project_vertex:o0,dithering_fragment:l0,dithering_pars_fragment:c0,roughnessmap_fragment:u0,roughnessmap_pars_fragment:f0,shadowmap_pars_fragment:d0,shadowmap_pars_vertex:h0,shadowmap_vertex:p0,shadowmask_pars_fragment:m0,skinbase_vertex:g0,skinning_pars_vertex:_0,skinning_vertex:v0,skinnormal_vertex:x0,specularmap_fragment:S0,specularmap_pars_fragment:M0,tonemapping_fragment:y0,tonemapping_pars_fragment:b0,transmission_fragment:E0,transmission_pars_fragment:T0,uv_pars_fragment:A0,uv_pars_vertex:w0,uv_vertex:R0,worldpos_vertex:C0,background_vert:`varying vec2 vUv;
+uniform mat3 uvTransform;
+void main() {
+	vUv = ( uvTransform * vec3( uv, 1 ) ).xy;
+	gl_Position = vec4( position.xy, 1.0, 1.0 );
+}`,background_frag:`uniform sampler2D t2D;
+uniform float backgroundIntensity;
+varying vec2 vUv;
+void main() {
+	vec4 texColor = texture2D( t2D, vUv );
+	#ifdef DECODE_VIDEO_TEXTURE
+		texColor = vec4( mix( pow( texColor.rgb * 0.9478672986 + vec3( 0.0521327014 ), vec3( 2.4 ) ), texColor.rgb * 0.0773993808, vec3( lessThanEqual( texColor.rgb, vec3( 0.04045 ) ) ) ), texColor.w );
+	#endif
+	texColor.rgb *= backgroundIntensity;
+	gl_FragColor = texColor;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,backgroundCube_vert:`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+	gl_Position.z = gl_Position.w;
+}`,backgroundCube_frag:`uniform float backgroundBlurriness;
+uniform float backgroundIntensity;
+uniform mat3 backgroundRotation;
+varying vec3 vWorldDirection;
+#include <envmap_common_pars_fragment>
+void main() {
+	#ifdef ENVMAP_TYPE_PMREM
+		vec4 texColor = textureLod( envMap, backgroundRotation * vWorldDirection, roughnessToMip( backgroundBlurriness ) );
+	#else
+		vec4 texColor = textureCube( envMap, backgroundRotation * vWorldDirection );
+	#endif
+	texColor.rgb *= backgroundIntensity;
+	gl_FragColor = texColor;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,cube_vert:`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+	gl_Position.z = gl_Position.w;
+}`,cube_frag:`uniform samplerCube tCube;
+uniform float tFlip;
+uniform float opacity;
+varying vec3 vWorldDirection;
+void main() {
+	vec4 texColor = textureCube( tCube, vec3( tFlip * vWorldDirection.x, vWorldDirection.yz ) );
+	gl_FragColor = texColor;
+	gl_FragColor.a *= opacity;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,depth_vert:`#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+varying vec2 vHighPrecisionZW;
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <skinbase_vertex>
+	#include <morphinstance_vertex>
+	#ifdef USE_DISPLACEMENTMAP
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vHighPrecisionZW = gl_Position.zw;
+}`,depth_frag:`#if DEPTH_PACKING == 3200
+	uniform float opacity;
+#endif
+#include <common>
+#include <packing>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+varying vec2 vHighPrecisionZW;
+void main() {
+	vec4 diffuseColor = vec4( 1.0 );
+	#include <clipping_planes_fragment>
+	#if DEPTH_PACKING == 3200
+		diffuseColor.a = opacity;
+	#endif
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <logdepthbuf_fragment>
+	#ifdef USE_REVERSED_DEPTH_BUFFER
+		float fragCoordZ = vHighPrecisionZW[ 0 ] / vHighPrecisionZW[ 1 ];
+	#else
+		float fragCoordZ = 0.5 * vHighPrecisionZW[ 0 ] / vHighPrecisionZW[ 1 ] + 0.5;
+	#endif
+	#if DEPTH_PACKING == 3200
+		gl_FragColor = vec4( vec3( 1.0 - fragCoordZ ), opacity );
+	#elif DEPTH_PACKING == 3201
+		gl_FragColor = packDepthToRGBA( fragCoordZ );
+	#elif DEPTH_PACKING == 3202
+		gl_FragColor = vec4( packDepthToRGB( fragCoordZ ), 1.0 );
+	#elif DEPTH_PACKING == 3203
+		gl_FragColor = vec4( packDepthToRG( fragCoordZ ), 0.0, 1.0 );
+	#endif
+}`,distance_vert:`#define DISTANCE
+varying vec3 vWorldPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <skinbase_vertex>
+	#include <morphinstance_vertex>
+	#ifdef USE_DISPLACEMENTMAP
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <worldpos_vertex>
+	#include <clipping_planes_vertex>
+	vWorldPosition = worldPosition.xyz;
+}`,distance_frag:`#define DISTANCE
+uniform vec3 referencePosition;
+uniform float nearDistance;
+uniform float farDistance;
+varying vec3 vWorldPosition;
+#include <common>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( 1.0 );
+	#include <clipping_planes_fragment>
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	float dist = length( vWorldPosition - referencePosition );
+	dist = ( dist - nearDistance ) / ( farDistance - nearDistance );
+	dist = saturate( dist );
+	gl_FragColor = vec4( dist, 0.0, 0.0, 1.0 );
+}`,equirect_vert:`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+}`,equirect_frag:`uniform sampler2D tEquirect;
+varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vec3 direction = normalize( vWorldDirection );
+	vec2 sampleUV = equirectUv( direction );
+	gl_FragColor = texture2D( tEquirect, sampleUV );
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,linedashed_vert:`uniform float scale;
+attribute float lineDistance;
+varying float vLineDistance;
+#include <common>
+#include <uv_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	vLineDistance = scale * lineDistance;
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+}`,linedashed_frag:`uniform vec3 diffuse;
+uniform float opacity;
+uniform float dashSize;
+uniform float totalSize;
+varying float vLineDistance;
+#include <common>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	if ( mod( vLineDistance, totalSize ) > dashSize ) {
+		discard;
+	}
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,meshbasic_vert:`#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#if defined ( USE_ENVMAP ) || defined ( USE_SKINNING )
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinbase_vertex>
+		#include <skinnormal_vertex>
+		#include <defaultnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <fog_vertex>
+}`,meshbasic_frag:`uniform vec3 diffuse;
+uniform float opacity;
+#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+#endif
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	#ifdef USE_LIGHTMAP
+		vec4 lightMapTexel = texture2D( lightMap, vLightMapUv );
+		reflectedLight.indirectDiffuse += lightMapTexel.rgb * lightMapIntensity * RECIPROCAL_PI;
+	#else
+		reflectedLight.indirectDiffuse += vec3( 1.0 );
+	#endif
+	#include <aomap_fragment>
+	reflectedLight.indirectDiffuse *= diffuseColor.rgb;
+	vec3 outgoingLight = reflectedLight.indirectDiffuse;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,meshlambert_vert:`#define LAMBERT
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,meshlambert_frag:`#define LAMBERT
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float opacity;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_lambert_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_lambert_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + totalEmissiveRadiance;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,meshmatcap_vert:`#define MATCAP
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <color_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+	vViewPosition = - mvPosition.xyz;
+}`,meshmatcap_frag:`#define MATCAP
+uniform vec3 diffuse;
+uniform float opacity;
+uniform sampler2D matcap;
+varying vec3 vViewPosition;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <normal_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	vec3 viewDir = normalize( vViewPosition );
+	vec3 x = normalize( vec3( viewDir.z, 0.0, - viewDir.x ) );
+	vec3 y = cross( viewDir, x );
+	vec2 uv = vec2( dot( x, normal ), dot( y, normal ) ) * 0.495 + 0.5;
+	#ifdef USE_MATCAP
+		vec4 matcapColor = texture2D( matcap, uv );
+	#else
+		vec4 matcapColor = vec4( vec3( mix( 0.2, 0.8, uv.y ) ), 1.0 );
+	#endif
+	vec3 outgoingLight = diffuseColor.rgb * matcapColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,meshnormal_vert:`#define NORMAL
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	varying vec3 vViewPosition;
+#endif
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	vViewPosition = - mvPosition.xyz;
+#endif
+}`,meshnormal_frag:`#define NORMAL
+uniform float opacity;
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	varying vec3 vViewPosition;
+#endif
+#include <uv_pars_fragment>
+#include <normal_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( 0.0, 0.0, 0.0, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	gl_FragColor = vec4( normalize( normal ) * 0.5 + 0.5, diffuseColor.a );
+	#ifdef OPAQUE
+		gl_FragColor.a = 1.0;
+	#endif
+}`,meshphong_vert:`#define PHONG
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,meshphong_frag:`#define PHONG
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform vec3 specular;
+uniform float shininess;
+uniform float opacity;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_phong_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_phong_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + reflectedLight.directSpecular + reflectedLight.indirectSpecular + totalEmissiveRadiance;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,meshphysical_vert:`#define STANDARD
+varying vec3 vViewPosition;
+#ifdef USE_TRANSMISSION
+	varying vec3 vWorldPosition;
+#endif
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+#ifdef USE_TRANSMISSION
+	vWorldPosition = worldPosition.xyz;
+#endif
+}`,meshphysical_frag:`#define STANDARD
+#ifdef PHYSICAL
+	#define IOR
+	#define USE_SPECULAR
+#endif
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float roughness;
+uniform float metalness;
+uniform float opacity;
+#ifdef IOR
+	uniform float ior;
+#endif
+#ifdef USE_SPECULAR
+	uniform float specularIntensity;
+	uniform vec3 specularColor;
+	#ifdef USE_SPECULAR_COLORMAP
+		uniform sampler2D specularColorMap;
+	#endif
+	#ifdef USE_SPECULAR_INTENSITYMAP
+		uniform sampler2D specularIntensityMap;
+	#endif
+#endif
+#ifdef USE_CLEARCOAT
+	uniform float clearcoat;
+	uniform float clearcoatRoughness;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESS
+	uniform float diffuseRoughness;
+	#ifdef USE_DIFFUSE_ROUGHNESSMAP
+		uniform sampler2D diffuseRoughnessMap;
+	#endif
+#endif
+#ifdef USE_DISPERSION
+	uniform float dispersion;
+#endif
+#ifdef USE_RETROREFLECTION
+	uniform float retroreflectivity;
+#endif
+#ifdef USE_IRIDESCENCE
+	uniform float iridescence;
+	uniform float iridescenceIOR;
+	uniform float iridescenceThicknessMinimum;
+	uniform float iridescenceThicknessMaximum;
+#endif
+#ifdef USE_SHEEN
+	uniform vec3 sheenColor;
+	uniform float sheenRoughness;
+	#ifdef USE_SHEEN_COLORMAP
+		uniform sampler2D sheenColorMap;
+	#endif
+	#ifdef USE_SHEEN_ROUGHNESSMAP
+		uniform sampler2D sheenRoughnessMap;
+	#endif
+#endif
+#ifdef USE_ANISOTROPY
+	uniform vec2 anisotropyVector;
+	#ifdef USE_ANISOTROPYMAP
+		uniform sampler2D anisotropyMap;
+	#endif
+#endif
+varying vec3 vViewPosition;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <iridescence_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_physical_pars_fragment>
+#include <transmission_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <clearcoat_pars_fragment>
+#include <iridescence_pars_fragment>
+#include <roughnessmap_pars_fragment>
+#include <metalnessmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <roughnessmap_fragment>
+	#include <metalnessmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <clearcoat_normal_fragment_begin>
+	#include <clearcoat_normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_physical_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 totalDiffuse = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse;
+	vec3 totalSpecular = reflectedLight.directSpecular + reflectedLight.indirectSpecular;
+	#include <transmission_fragment>
+	vec3 outgoingLight = totalDiffuse + totalSpecular + totalEmissiveRadiance;
+	#ifdef USE_SHEEN
+ 
+		outgoingLight = outgoingLight + sheenSpecularDirect + sheenSpecularIndirect;
+ 
+ 	#endif
+	#ifdef USE_CLEARCOAT
+		float dotNVcc = saturate( dot( geometryClearcoatNormal, geometryViewDir ) );
+		vec3 Fcc = F_Schlick( material.clearcoatF0, material.clearcoatF90, dotNVcc );
+		outgoingLight = outgoingLight * ( 1.0 - material.clearcoat * Fcc ) + ( clearcoatSpecularDirect + clearcoatSpecularIndirect ) * material.clearcoat;
+	#endif
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,meshtoon_vert:`#define TOON
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,meshtoon_frag:`#define TOON
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float opacity;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <gradientmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_toon_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_toon_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + totalEmissiveRadiance;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,points_vert:`uniform float size;
+uniform float scale;
+#include <common>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+#ifdef USE_POINTS_UV
+	varying vec2 vUv;
+	uniform mat3 uvTransform;
+#endif
+void main() {
+	#ifdef USE_POINTS_UV
+		vUv = ( uvTransform * vec3( uv, 1 ) ).xy;
+	#endif
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <project_vertex>
+	gl_PointSize = size;
+	#ifdef USE_SIZEATTENUATION
+		bool isPerspective = isPerspectiveMatrix( projectionMatrix );
+		if ( isPerspective ) gl_PointSize *= ( scale / - mvPosition.z );
+	#endif
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <worldpos_vertex>
+	#include <fog_vertex>
+}`,points_frag:`uniform vec3 diffuse;
+uniform float opacity;
+#include <common>
+#include <color_pars_fragment>
+#include <map_particle_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_particle_fragment>
+	#include <color_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,shadow_vert:`#include <common>
+#include <batching_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <shadowmap_pars_vertex>
+void main() {
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,shadow_frag:`uniform vec3 color;
+uniform float opacity;
+#include <common>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <logdepthbuf_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <shadowmask_pars_fragment>
+void main() {
+	#include <logdepthbuf_fragment>
+	gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,sprite_vert:`uniform float rotation;
+uniform vec2 center;
+#include <common>
+#include <uv_pars_vertex>
+#include <fog_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	vec4 mvPosition = modelViewMatrix[ 3 ];
+	vec2 scale = vec2( length( modelMatrix[ 0 ].xyz ), length( modelMatrix[ 1 ].xyz ) );
+	#ifndef USE_SIZEATTENUATION
+		bool isPerspective = isPerspectiveMatrix( projectionMatrix );
+		if ( isPerspective ) scale *= - mvPosition.z;
+	#endif
+	vec2 alignedPosition = ( position.xy - ( center - vec2( 0.5 ) ) ) * scale;
+	vec2 rotatedPosition;
+	rotatedPosition.x = cos( rotation ) * alignedPosition.x - sin( rotation ) * alignedPosition.y;
+	rotatedPosition.y = sin( rotation ) * alignedPosition.x + cos( rotation ) * alignedPosition.y;
+	mvPosition.xy += rotatedPosition;
+	gl_Position = projectionMatrix * mvPosition;
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+}`,sprite_frag:`uniform vec3 diffuse;
+uniform float opacity;
+#include <common>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+}`},me={common:{diffuse:{value:new Ye(16777215)},opacity:{value:1},map:{value:null},mapTransform:{value:new Fe},alphaMap:{value:null},alphaMapTransform:{value:new Fe},alphaTest:{value:0}},specularmap:{specularMap:{value:null},specularMapTransform:{value:new Fe}},envmap:{envMap:{value:null},envMapRotation:{value:new Fe},reflectivity:{value:1},ior:{value:1.5},refractionRatio:{value:.98},dfgLUT:{value:null}},aomap:{aoMap:{value:null},aoMapIntensity:{value:1},aoMapTransform:{value:new Fe}},lightmap:{lightMap:{value:null},lightMapIntensity:{value:1},lightMapTransform:{value:new Fe}},bumpmap:{bumpMap:{value:null},bumpMapTransform:{value:new Fe},bumpScale:{value:1}},normalmap:{normalMap:{value:null},normalMapTransform:{value:new Fe},normalScale:{value:new He(1,1)}},displacementmap:{displacementMap:{value:null},displacementMapTransform:{value:new Fe},displacementScale:{value:1},displacementBias:{value:0}},emissivemap:{emissiveMap:{value:null},emissiveMapTransform:{value:new Fe}},metalnessmap:{metalnessMap:{value:null},metalnessMapTransform:{value:new Fe}},roughnessmap:{roughnessMap:{value:null},roughnessMapTransform:{value:new Fe}},gradientmap:{gradientMap:{value:null}},fog:{fogDensity:{value:25e-5},fogNear:{value:1},fogFar:{value:2e3},fogColor:{value:new Ye(16777215)}},lights:{ambientLightColor:{value:[]},lightProbe:{value:[]},sunLights:{value:[],properties:{direction:{},color:{}}},sunLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},sunShadowMatrix:{value:[]},sunShadowCascade:{value:[]},directionalLights:{value:[],properties:{direction:{},color:{}}},directionalLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},directionalShadowMatrix:{value:[]},spotLights:{value:[],properties:{color:{},position:{},direction:{},distance:{},coneCos:{},penumbraCos:{},decay:{}}},spotLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},spotLightMap:{value:[]},spotLightMatrix:{value:[]},pointLights:{value:[],properties:{color:{},position:{},decay:{},distance:{}}},pointLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{},shadowCameraNear:{},shadowCameraFar:{}}},pointShadowMatrix:{value:[]},hemisphereLights:{value:[],properties:{direction:{},skyColor:{},groundColor:{}}},rectAreaLights:{value:[],properties:{color:{},position:{},width:{},height:{}}},ltc_1:{value:null},ltc_2:{value:null},probesSH:{value:[]},probesMin:{value:[]},probesMax:{value:[]},probesResolution:{value:[]}},points:{diffuse:{value:new Ye(16777215)},opacity:{value:1},size:{value:1},scale:{value:1},map:{value:null},alphaMap:{value:null},alphaMapTransform:{value:new Fe},alphaTest:{value:0},uvTransform:{value:new Fe}},sprite:{diffuse:{value:new Ye(16777215)},opacity:{value:1},center:{value:new He(.5,.5)},rotation:{value:0},map:{value:null},mapTransform:{value:new Fe},alphaMap:{value:null},alphaMapTransform:{value:new Fe},alphaTest:{value:0}}},Wn={basic:{uniforms:Qt([me.common,me.specularmap,me.envmap,me.aomap,me.lightmap,me.fog]),vertexShader:ke.meshbasic_vert,fragmentShader:ke.meshbasic_frag},lambert:{uniforms:Qt([me.common,me.specularmap,me.envmap,me.aomap,me.lightmap,me.emissivemap,me.bumpmap,me.normalmap,me.displacementmap,me.fog,me.lights,{emissive:{value:new Ye(0)},envMapIntensity:{value:1}}]),vertexShader:ke.meshlambert_vert,fragmentShader:ke.meshlambert_frag},phong:{uniforms:Qt([me.common,me.specularmap,me.envmap,me.aomap,me.lightmap,me.emissivemap,me.bumpmap,me.normalmap,me.displacementmap,me.fog,me.lights,{emissive:{value:new Ye(0)},specular:{value:new Ye(1118481)},shininess:{value:30},envMapIntensity:{value:1}}]),vertexShader:ke.meshphong_vert,fragmentShader:ke.meshphong_frag},standard:{uniforms:Qt([me.common,me.envmap,me.aomap,me.lightmap,me.emissivemap,me.bumpmap,me.normalmap,me.displacementmap,me.roughnessmap,me.metalnessmap,me.fog,me.lights,{emissive:{value:new Ye(0)},roughness:{value:1},metalness:{value:0},envMapIntensity:{value:1}}]),vertexShader:ke.meshphysical_vert,fragmentShader:ke.meshphysical_frag},toon:{uniforms:Qt([me.common,me.aomap,me.lightmap,me.emissivemap,me.bumpmap,me.normalmap,me.displacementmap,me.gradientmap,me.fog,me.lights,{emissive:{value:new Ye(0)}}]),vertexShader:ke.meshtoon_vert,fragmentShader:ke.meshtoon_frag},matcap:{uniforms:Qt([me.common,me.bumpmap,me.normalmap,me.displacementmap,me.fog,{matcap:{value:null}}]),vertexShader:ke.meshmatcap_vert,fragmentShader:ke.meshmatcap_frag},points:{uniforms:Qt([me.points,me.fog]),vertexShader:ke.points_vert,fragmentShader:ke.points_frag},dashed:{uniforms:Qt([me.common,me.fog,{scale:{value:1},dashSize:{value:1},totalSize:{value:2}}]),vertexShader:ke.linedashed_vert,fragmentShader:ke.linedashed_frag},depth:{uniforms:Qt([me.common,me.displacementmap]),vertexShader:ke.depth_vert,fragmentShader:ke.depth_frag},normal:{uniforms:Qt([me.common,me.bumpmap,me.normalmap,me.displacementmap,{opacity:{value:1}}]),vertexShader:ke.meshnormal_vert,fragmentShader:ke.meshnormal_frag},sprite:{uniforms:Qt([me.sprite,me.fog]),vertexShader:ke.sprite_vert,fragmentShader:ke.sprite_frag},background:{uniforms:{uvTransform:{value:new Fe},t2D:{value:null},backgroundIntensity:{value:1}},vertexShader:ke.background_vert,fragmentShader:ke.background_frag},backgroundCube:{uniforms:{envMap:{value:null},backgroundBlurriness:{value:0},backgroundIntensity:{value:1},backgroundRotation:{value:new Fe}},vertexShader:ke.backgroundCube_vert,fragmentShader:ke.backgroundCube_frag},cube:{uniforms:{tCube:{value:null},tFlip:{value:-1},opacity:{value:1}},vertexShader:ke.cube_vert,fragmentShader:ke.cube_frag},equirect:{uniforms:{tEquirect:{value:null}},vertexShader:ke.equirect_vert,fragmentShader:ke.equirect_frag},distance:{uniforms:Qt([me.common,me.displacementmap,{referencePosition:{value:new N},nearDistance:{value:1},farDistance:{value:1e3}}]),vertexShader:ke.distance_vert,fragmentShader:ke.distance_frag},shadow:{uniforms:Qt([me.lights,me.fog,{color:{value:new Ye(0)},opacity:{value:1}}]),vertexShader:ke.shadow_vert,fragmentShader:ke.shadow_frag}};Wn.physical={uniforms:Qt([Wn.standard.uniforms,{clearcoat:{value:0},clearcoatMap:{value:null},clearcoatMapTransform:{value:new Fe},clearcoatNormalMap:{value:null},clearcoatNormalMapTransform:{value:new Fe},clearcoatNormalScale:{value:new He(1,1)},clearcoatRoughness:{value:0},clearcoatRoughnessMap:{value:null},clearcoatRoughnessMapTransform:{value:new Fe},diffuseRoughness:{value:0},diffuseRoughnessMap:{value:null},diffuseRoughnessMapTransform:{value:new Fe},dispersion:{value:0},retroreflectivity:{value:0},iridescence:{value:0},iridescenceMap:{value:null},iridescenceMapTransform:{value:new Fe},iridescenceIOR:{value:1.3},iridescenceThicknessMinimum:{value:100},iridescenceThicknessMaximum:{value:400},iridescenceThicknessMap:{value:null},iridescenceThicknessMapTransform:{value:new Fe},sheen:{value:0},sheenColor:{value:new Ye(0)},sheenColorMap:{value:null},sheenColorMapTransform:{value:new Fe},sheenRoughness:{value:1},sheenRoughnessMap:{value:null},sheenRoughnessMapTransform:{value:new Fe},transmission:{value:0},transmissionMap:{value:null},transmissionMapTransform:{value:new Fe},transmissionSamplerSize:{value:new He},transmissionSamplerMap:{value:null},thickness:{value:0},thicknessMap:{value:null},thicknessMapTransform:{value:new Fe},attenuationDistance:{value:0},attenuationColor:{value:new Ye(0)},specularColor:{value:new Ye(1,1,1)},specularColorMap:{value:null},specularColorMapTransform:{value:new Fe},specularIntensity:{value:1},specularIntensityMap:{value:null},specularIntensityMapTransform:{value:new Fe},anisotropyVector:{value:new He},anisotropyMap:{value:null},anisotropyMapTransform:{value:new Fe}}]),vertexShader:ke.meshphysical_vert,fragmentShader:ke.meshphysical_frag};const eo={r:0,b:0,g:0},P0=new je,Ad=new Fe;Ad.set(-1,0,0,0,1,0,0,0,1);function L0(n,e,t,i,r,s){const a=new Ye(0);let o=r===!0?0:1,l,c,f=null,d=0,u=null;function h(v){let M=v.isScene===!0?v.background:null;if(M&&M.isTexture){const S=v.backgroundBlurriness>0;M=e.get(M,S)}return M}function g(v){let M=!1;const S=h(v);S===null?m(a,o):S&&S.isColor&&(m(S,1),M=!0);const b=n.xr.getEnvironmentBlendMode();b==="additive"?t.buffers.color.setClear(0,0,0,1,s):b==="alpha-blend"&&t.buffers.color.setClear(0,0,0,0,s),(n.autoClear||M)&&(t.buffers.depth.setTest(!0),t.buffers.depth.setMask(!0),t.buffers.color.setMask(!0),n.clear(n.autoClearColor,n.autoClearDepth,n.autoClearStencil))}function x(v,M){const S=h(M);S&&S.isCubeTexture?(c===void 0&&(c=new hi(new Ns(1,1,1),new Li({name:"BackgroundCubeMaterial",uniforms:Or(Wn.backgroundCube.uniforms),vertexShader:Wn.backgroundCube.vertexShader,fragmentShader:Wn.backgroundCube.fragmentShader,side:Kt,depthTest:!1,depthWrite:!1,fog:!1,allowOverride:!1})),c.geometry.deleteAttribute("normal"),c.geometry.deleteAttribute("uv"),c.onBeforeRender=function(b,w,_){this.matrixWorld.copyPosition(_.matrixWorld)},Object.defineProperty(c.material,"envMap",{get:function(){return this.uniforms.envMap.value}}),i.update(c)),c.material.uniforms.envMap.value=S,c.material.uniforms.backgroundBlurriness.value=M.backgroundBlurriness,c.material.uniforms.backgroundIntensity.value=M.backgroundIntensity,c.material.uniforms.backgroundRotation.value.setFromMatrix4(P0.makeRotationFromEuler(M.backgroundRotation)).transpose(),S.isRenderTargetTexture===!1&&c.material.uniforms.backgroundRotation.value.premultiply(Ad),c.material.toneMapped=Xe.getTransfer(S.colorSpace)!==et,(f!==S||d!==S.version||u!==n.toneMapping)&&(c.material.needsUpdate=!0,f=S,d=S.version,u=n.toneMapping),c.layers.enableAll(),v.unshift(c,c.geometry,c.material,0,0,null)):S&&S.isTexture&&(l===void 0&&(l=new hi(new Za(2,2),new Li({name:"BackgroundMaterial",uniforms:Or(Wn.background.uniforms),vertexShader:Wn.background.vertexShader,fragmentShader:Wn.background.fragmentShader,side:ri,depthTest:!1,depthWrite:!1,fog:!1,allowOverride:!1})),l.geometry.deleteAttribute("normal"),Object.defineProperty(l.material,"map",{get:function(){return this.uniforms.t2D.value}}),i.update(l)),l.material.uniforms.t2D.value=S,l.material.uniforms.backgroundIntensity.value=M.backgroundIntensity,l.material.toneMapped=Xe.getTransfer(S.colorSpace)!==et,S.matrixAutoUpdate===!0&&S.updateMatrix(),l.material.uniforms.uvTransform.value.copy(S.matrix),(f!==S||d!==S.version||u!==n.toneMapping)&&(l.material.needsUpdate=!0,f=S,d=S.version,u=n.toneMapping),l.layers.enableAll(),v.unshift(l,l.geometry,l.material,0,0,null))}function m(v,M){v.getRGB(eo,xd(n)),t.buffers.color.setClear(eo.r,eo.g,eo.b,M,s)}function p(){c!==void 0&&(c.geometry.dispose(),c.material.dispose(),c=void 0),l!==void 0&&(l.geometry.dispose(),l.material.dispose(),l=void 0)}return{getClearColor:function(){return a},setClearColor:function(v,M=1){a.set(v),o=M,m(a,o)},getClearAlpha:function(){return o},setClearAlpha:function(v){o=v,m(a,o)},render:g,addToRenderList:x,dispose:p}}function D0(n,e){const t=n.getParameter(n.MAX_VERTEX_ATTRIBS),i={},r=u(null);let s=r,a=!1;function o(P,D,O,L,k){let V=!1;const W=d(P,L,O,D);s!==W&&(s=W,c(s.object)),V=h(P,L,O,k),V&&g(P,L,O,k),k!==null&&e.update(k,n.ELEMENT_ARRAY_BUFFER),(V||a)&&(a=!1,S(P,D,O,L),k!==null&&n.bindBuffer(n.ELEMENT_ARRAY_BUFFER,e.get(k).buffer))}function l(){return n.createVertexArray()}function c(P){return n.bindVertexArray(P)}function f(P){return n.deleteVertexArray(P)}function d(P,D,O,L){const k=L.wireframe===!0;let V=i[D.id];V===void 0&&(V={},i[D.id]=V);const W=P.isInstancedMesh===!0?P.id:0;let te=V[W];te===void 0&&(te={},V[W]=te);let $=te[O.id];$===void 0&&($={},te[O.id]=$);let j=$[k];return j===void 0&&(j=u(l()),$[k]=j),j}function u(P){const D=[],O=[],L=[];for(let k=0;k<t;k++)D[k]=0,O[k]=0,L[k]=0;return{geometry:null,program:null,wireframe:!1,newAttributes:D,enabledAttributes:O,attributeDivisors:L,object:P,attributes:{},index:null}}function h(P,D,O,L){const k=s.attributes,V=D.attributes;let W=0;const te=O.getAttributes();for(const $ in te)if(te[$].location>=0){const ee=k[$];let Se=V[$];if(Se===void 0&&($==="instanceMatrix"&&P.instanceMatrix&&(Se=P.instanceMatrix),$==="instanceColor"&&P.instanceColor&&(Se=P.instanceColor)),ee===void 0||ee.attribute!==Se||Se&&ee.data!==Se.data)return!0;W++}return s.attributesNum!==W||s.index!==L}function g(P,D,O,L){const k={},V=D.attributes;let W=0;const te=O.getAttributes();for(const $ in te)if(te[$].location>=0){let ee=V[$];ee===void 0&&($==="instanceMatrix"&&P.instanceMatrix&&(ee=P.instanceMatrix),$==="instanceColor"&&P.instanceColor&&(ee=P.instanceColor));const Se={};Se.attribute=ee,ee&&ee.data&&(Se.data=ee.data),k[$]=Se,W++}s.attributes=k,s.attributesNum=W,s.index=L}function x(){const P=s.newAttributes;for(let D=0,O=P.length;D<O;D++)P[D]=0}function m(P){p(P,0)}function p(P,D){const O=s.newAttributes,L=s.enabledAttributes,k=s.attributeDivisors;O[P]=1,L[P]===0&&(n.enableVertexAttribArray(P),L[P]=1),k[P]!==D&&(n.vertexAttribDivisor(P,D),k[P]=D)}function v(){const P=s.newAttributes,D=s.enabledAttributes;for(let O=0,L=D.length;O<L;O++)D[O]!==P[O]&&(n.disableVertexAttribArray(O),D[O]=0)}function M(P,D,O,L,k,V,W){W===!0?n.vertexAttribIPointer(P,D,O,k,V):n.vertexAttribPointer(P,D,O,L,k,V)}function S(P,D,O,L){x();const k=L.attributes,V=O.getAttributes(),W=D.defaultAttributeValues;for(const te in V){const $=V[te];if($.location>=0){let j=k[te];if(j===void 0&&(te==="instanceMatrix"&&P.instanceMatrix&&(j=P.instanceMatrix),te==="instanceColor"&&P.instanceColor&&(j=P.instanceColor)),j!==void 0){const ee=j.normalized,Se=j.itemSize,De=e.get(j);if(De===void 0)continue;const Z=De.buffer,fe=De.type,xe=De.bytesPerElement,we=fe===n.INT||fe===n.UNSIGNED_INT||j.gpuType===vl;if(j.isInterleavedBufferAttribute){const ge=j.data,Ie=ge.isInterleavedBuffer===!0?ge.stride:ge.itemSize,mt=j.offset;if(ge.isInstancedInterleavedBuffer||ge.isInstancedBufferAttribute){for(let Re=0;Re<$.locationSize;Re++)p($.location+Re,ge.meshPerAttribute);P.isInstancedMesh!==!0&&L._maxInstanceCount===void 0&&(L._maxInstanceCount=ge.meshPerAttribute*ge.count)}else for(let Re=0;Re<$.locationSize;Re++)m($.location+Re);n.bindBuffer(n.ARRAY_BUFFER,Z);for(let Re=0;Re<$.locationSize;Re++)M($.location+Re,Se/$.locationSize,fe,ee,Ie*xe,(mt+Se/$.locationSize*Re)*xe,we)}else{if(j.isInstancedBufferAttribute){for(let ge=0;ge<$.locationSize;ge++)p($.location+ge,j.meshPerAttribute);P.isInstancedMesh!==!0&&L._maxInstanceCount===void 0&&(L._maxInstanceCount=j.meshPerAttribute*j.count)}else for(let ge=0;ge<$.locationSize;ge++)m($.location+ge);n.bindBuffer(n.ARRAY_BUFFER,Z);for(let ge=0;ge<$.locationSize;ge++)M($.location+ge,Se/$.locationSize,fe,ee,Se*xe,Se/$.locationSize*ge*xe,we)}}else if(W!==void 0){const ee=W[te];if(ee!==void 0)switch(ee.length){case 2:n.vertexAttrib2fv($.location,ee);break;case 3:n.vertexAttrib3fv($.location,ee);break;case 4:n.vertexAttrib4fv($.location,ee);break;default:n.vertexAttrib1fv($.location,ee)}}}}v()}function b(){I();for(const P in i){const D=i[P];for(const O in D){const L=D[O];for(const k in L){const V=L[k];for(const W in V)f(V[W].object),delete V[W];delete L[k]}}delete i[P]}}function w(P){if(i[P.id]===void 0)return;const D=i[P.id];for(const O in D){const L=D[O];for(const k in L){const V=L[k];for(const W in V)f(V[W].object),delete V[W];delete L[k]}}delete i[P.id]}function _(P){for(const D in i){const O=i[D];for(const L in O){const k=O[L];if(k[P.id]===void 0)continue;const V=k[P.id];for(const W in V)f(V[W].object),delete V[W];delete k[P.id]}}}function y(P){for(const D in i){const O=i[D],L=P.isInstancedMesh===!0?P.id:0,k=O[L];if(k!==void 0){for(const V in k){const W=k[V];for(const te in W)f(W[te].object),delete W[te];delete k[V]}delete O[L],Object.keys(O).length===0&&delete i[D]}}}function I(){R(),a=!0,s!==r&&(s=r,c(s.object))}function R(){r.geometry=null,r.program=null,r.wireframe=!1}return{setup:o,reset:I,resetDefaultState:R,dispose:b,releaseStatesOfGeometry:w,releaseStatesOfObject:y,releaseStatesOfProgram:_,initAttributes:x,enableAttribute:m,disableUnusedAttributes:v}}function I0(n,e,t){let i;function r(l){i=l}function s(l,c){n.drawArrays(i,l,c),t.update(c,i,1)}function a(l,c,f){f!==0&&(n.drawArraysInstanced(i,l,c,f),t.update(c,i,f))}function o(l,c,f){if(f===0)return;e.get("WEBGL_multi_draw").multiDrawArraysWEBGL(i,l,0,c,0,f);let u=0;for(let h=0;h<f;h++)u+=c[h];t.update(u,i,1)}this.setMode=r,this.render=s,this.renderInstances=a,this.renderMultiDraw=o}function N0(n,e,t,i){let r;function s(){if(r!==void 0)return r;if(e.has("EXT_texture_filter_anisotropic")===!0){const _=e.get("EXT_texture_filter_anisotropic");r=n.getParameter(_.MAX_TEXTURE_MAX_ANISOTROPY_EXT)}else r=0;return r}function a(_){return!(_!==zn&&i.convert(_)!==n.getParameter(n.IMPLEMENTATION_COLOR_READ_FORMAT))}function o(_){const y=_===kn&&(e.has("EXT_color_buffer_half_float")||e.has("EXT_color_buffer_float"));return!(_!==hn&&_!==Bn&&!y&&i.convert(_)!==n.getParameter(n.IMPLEMENTATION_COLOR_READ_TYPE))}function l(_){if(_==="highp"){if(n.getShaderPrecisionFormat(n.VERTEX_SHADER,n.HIGH_FLOAT).precision>0&&n.getShaderPrecisionFormat(n.FRAGMENT_SHADER,n.HIGH_FLOAT).precision>0)return"highp";_="mediump"}return _==="mediump"&&n.getShaderPrecisionFormat(n.VERTEX_SHADER,n.MEDIUM_FLOAT).precision>0&&n.getShaderPrecisionFormat(n.FRAGMENT_SHADER,n.MEDIUM_FLOAT).precision>0?"mediump":"lowp"}let c=t.precision!==void 0?t.precision:"highp";const f=l(c);f!==c&&(Pe("WebGLRenderer:",c,"not supported, using",f,"instead."),c=f);const d=t.reversedDepthBuffer===!0&&e.has("EXT_clip_control"),u=t.logarithmicDepthBuffer===!0&&d===!1;t.reversedDepthBuffer===!0&&d===!1&&Pe("WebGLRenderer: Unable to use reversed depth buffer due to missing EXT_clip_control extension. Fallback to default depth buffer."),t.logarithmicDepthBuffer===!0&&d===!0&&Pe("WebGLRenderer: Logarithmic depth buffer is ignored when reversed depth buffer is enabled.");const h=n.getParameter(n.MAX_TEXTURE_IMAGE_UNITS),g=n.getParameter(n.MAX_VERTEX_TEXTURE_IMAGE_UNITS),x=n.getParameter(n.MAX_TEXTURE_SIZE),m=n.getParameter(n.MAX_CUBE_MAP_TEXTURE_SIZE),p=n.getParameter(n.MAX_VERTEX_ATTRIBS),v=n.getParameter(n.MAX_VERTEX_UNIFORM_VECTORS),M=n.getParameter(n.MAX_VARYING_VECTORS),S=n.getParameter(n.MAX_FRAGMENT_UNIFORM_VECTORS),b=n.getParameter(n.MAX_SAMPLES),w=n.getParameter(n.SAMPLES);return{isWebGL2:!0,getMaxAnisotropy:s,getMaxPrecision:l,textureFormatReadable:a,textureTypeReadable:o,precision:c,logarithmicDepthBuffer:u,reversedDepthBuffer:d,maxTextures:h,maxVertexTextures:g,maxTextureSize:x,maxCubemapSize:m,maxAttributes:p,maxVertexUniforms:v,maxVaryings:M,maxFragmentUniforms:S,maxSamples:b,samples:w}}function U0(n){const e=this;let t=null,i=0,r=!1,s=!1;const a=new Gn,o=new Fe,l={value:null,needsUpdate:!1};this.uniform=l,this.numPlanes=0,this.numIntersection=0,this.init=function(d,u){const h=d.length!==0||u||i!==0||r;return r=u,i=d.length,h},this.beginShadows=function(){s=!0,f(null)},this.endShadows=function(){s=!1},this.setGlobalState=function(d,u){t=f(d,u,0)},this.setState=function(d,u,h){const g=d.clippingPlanes,x=d.clipIntersection,m=d.clipShadows,p=n.get(d);if(!r||g===null||g.length===0||s&&!m)s?f(null):c();else{const v=s?0:i,M=v*4;let S=p.clippingState||null;l.value=S,S=f(g,u,M,h);for(let b=0;b!==M;++b)S[b]=t[b];p.clippingState=S,this.numIntersection=x?this.numPlanes:0,this.numPlanes+=v}};function c(){l.value!==t&&(l.value=t,l.needsUpdate=i>0),e.numPlanes=i,e.numIntersection=0}function f(d,u,h,g){const x=d!==null?d.length:0;let m=null;if(x!==0){if(m=l.value,g!==!0||m===null){const p=h+x*4,v=u.matrixWorldInverse;o.getNormalMatrix(v),(m===null||m.length<p)&&(m=new Float32Array(p));for(let M=0,S=h;M!==x;++M,S+=4)a.copy(d[M]).applyMatrix4(v,o),a.normal.toArray(m,S),m[S+3]=a.constant}l.value=m,l.needsUpdate=!0}return e.numPlanes=x,e.numIntersection=0,m}}class Lc extends Rn{constructor(e=1,t={}){super(e,e,t),this.isWebGLCubeRenderTarget=!0;const i={width:e,height:e,depth:1},r=[i,i,i,i,i,i];this.texture=new md(r),this._setTextureOptions(t),this.texture.isRenderTargetTexture=!0}fromEquirectangularTexture(e,t){this.texture.type=t.type,this.texture.colorSpace=t.colorSpace,this.texture.generateMipmaps=t.generateMipmaps,this.texture.minFilter=t.minFilter,this.texture.magFilter=t.magFilter;const i={uniforms:{tEquirect:{value:null}},vertexShader:`
+
+				varying vec3 vWorldDirection;
+
+				vec3 transformDirection( in vec3 dir, in mat4 matrix ) {
+
+					return normalize( ( matrix * vec4( dir, 0.0 ) ).xyz );
+
+				}
+
+				void main() {
+
+					vWorldDirection = transformDirection( position, modelMatrix );
+
+					#include <begin_vertex>
+					#include <project_vertex>
+
+				}
+			`,fragmentShader:`
+
+				uniform sampler2D tEquirect;
+
+				varying vec3 vWorldDirection;
+
+				#include <common>
+
+				void main() {
+
+					vec3 direction = normalize( vWorldDirection );
+
+					vec2 sampleUV = equirectUv( direction );
+
+					gl_FragColor = texture2D( tEquirect, sampleUV );
+
+				}
+			`},r=new Ns(5,5,5),s=new Li({name:"CubemapFromEquirect",uniforms:Or(i.uniforms),vertexShader:i.vertexShader,fragmentShader:i.fragmentShader,side:Kt,blending:Mr});s.uniforms.tEquirect.value=t;const a=new hi(r,s),o=t.minFilter;return t.minFilter===yi&&(t.minFilter=tn),new Cc(1,10,this).update(e,a),t.minFilter=o,a.geometry.dispose(),a.material.dispose(),this}clear(e,t=!0,i=!0,r=!0){const s=e.getRenderTarget();for(let a=0;a<6;a++)e.setRenderTarget(this,a),e.clear(t,i,r);e.setRenderTarget(s)}}const wd=256,F0=3,O0=20,Rd=256,Cd=16,B0=3,k0=new N,z0=new Ye;class to{constructor(e){this._renderer=e,this._cubeSize=0,this._sourceTarget=null,this._cubeCamera=new Cc(1,10,null),this._boxMesh=new hi(new Ns(5,5,5),null),this._cubemapMaterial=null,this._equirectMaterial=null,this._blurMaterial=null,this._ggxMaterial=null,this._integrationMaterial=null}fromScene(e,t=0,i=.1,r=100,s={}){const{size:a=256,position:o=k0}=s,l=this._renderer;this._setSize(a);const c=this._allocateTarget(),f=this._getSourceTarget(!0);t>0&&(f.texture.mipmapsAutoUpdate=!1);const d=l.autoClear,u=l.autoClearColor,h=l.autoClearDepth,g=l.autoClearStencil,x=e.background;l.autoClear=!0,l.autoClearColor=!0,l.autoClearDepth=!0,l.autoClearStencil=!0,x===null&&(e.background=l.getClearColor(z0));const m=new Cc(i,r,f);return m.position.copy(o),m.update(l,e),l.autoClear=d,l.autoClearColor=u,l.autoClearDepth=h,l.autoClearStencil=g,e.background=x,t>0&&(f.texture.mipmapsAutoUpdate=!0,this._blur(c,t)),this._applyPMREM(c),c}fromEquirectangular(e,t=null){return this._fromTexture(e,t)}fromCubemap(e,t=null){return this._fromTexture(e,t)}compileCubemapShader(){this._cubemapMaterial===null&&(this._cubemapMaterial=Dd(),this._compileMaterial(this._cubemapMaterial))}compileEquirectangularShader(){this._equirectMaterial===null&&(this._equirectMaterial=Ld(),this._compileMaterial(this._equirectMaterial))}dispose(){this._sourceTarget!==null&&this._sourceTarget.dispose(),this._cubemapMaterial!==null&&this._cubemapMaterial.dispose(),this._equirectMaterial!==null&&this._equirectMaterial.dispose(),this._blurMaterial!==null&&this._blurMaterial.dispose(),this._ggxMaterial!==null&&this._ggxMaterial.dispose(),this._integrationMaterial!==null&&this._integrationMaterial.dispose(),this._boxMesh.geometry.dispose()}static lodToRoughness(e,t){return t>0?1-Math.sqrt(1-e/t):0}_setSize(e){this._cubeSize=Math.max(wd,Wm(e))}_fromTexture(e,t){e.mapping===br||e.mapping===Ts?this._setSize(e.image.length===0?wd:e.image[0].width||e.image[0].image.width):this._setSize(e.image.width/4);const i=t||this._allocateTarget();return this._textureToCubemap(e),this._applyPMREM(i),i}_allocateTarget(){const e=this._cubeSize,t=Pd(e,!1,!1),i=Math.log2(e)-F0;for(let r=0;r<=i;r++)t.texture.mipmaps.push({width:e>>r,height:e>>r});return t.texture.name="PMREM",t.texture.isPMREMTexture=!0,t}_getSourceTarget(e=!1){const t=this._cubeSize,i=this._sourceTarget;return(i===null||i.width!==t||e&&i.depthBuffer===!1)&&(i!==null&&i.dispose(),this._sourceTarget=Pd(t,!0,e)),this._sourceTarget}_compileMaterial(e){this._boxMesh.material=e,this._renderer.compile(this._boxMesh,this._cubeCamera.children[0])}_renderCube(e,t,i){const r=this._boxMesh,s=this._cubeCamera;r.material=i,s.renderTarget=e,s.activeMipmapLevel=t;const a=e.width>>t;e.viewport.set(0,0,a,a),s.update(this._renderer,r),e.viewport.set(0,0,e.width,e.height)}_textureToCubemap(e){let t;e.mapping===br||e.mapping===Ts?(this._cubemapMaterial===null&&(this._cubemapMaterial=Dd()),t=this._cubemapMaterial,t.uniforms.flipEnvMap.value=e.isRenderTargetTexture===!1?-1:1):(this._equirectMaterial===null&&(this._equirectMaterial=Ld()),t=this._equirectMaterial),t.uniforms.envMap.value=e,this._renderCube(this._getSourceTarget(),0,t)}_applyPMREM(e){this._ggxMaterial===null&&(this._ggxMaterial=H0(),this._integrationMaterial=G0());const t=this._cubeSize,i=e.texture.mipmaps.length-1,r=this._ggxMaterial.uniforms;r.envMap.value=this._sourceTarget.texture;const s=this._integrationMaterial.uniforms;s.envMap.value=this._sourceTarget.texture,s.sourceLod.value=Math.log2(t/Cd);for(let a=0;a<=i;a++){const o=to.lodToRoughness(a,i);if(a>i-B0)s.roughness.value=o,this._renderCube(e,a,this._integrationMaterial);else{const l=o>0?Math.log2(t)+.5*Math.log2(6/(Rd*Math.pow(o,4)))+.5:0;r.roughness.value=o,r.lodBias.value=l,this._renderCube(e,a,this._ggxMaterial)}}}_blur(e,t){this._blurMaterial===null&&(this._blurMaterial=V0());const i=this._blurMaterial,r=i.uniforms,s=this._sourceTarget;r.sigma.value=Math.min(t,Math.PI)/Math.SQRT2,r.envMap.value=s.texture,this._renderCube(e,0,i),r.envMap.value=e.texture,this._renderCube(s,0,i)}}function Pd(n,e,t){return new Lc(n,{minFilter:yi,generateMipmaps:e,type:kn,colorSpace:Sa,depthBuffer:t})}function Us(n,e,t){return new Li({name:n,uniforms:e,vertexShader:ke.cube_vert,fragmentShader:t,side:Kt,blending:Mr,depthTest:!1,depthWrite:!1})}function H0(){return Us("PMREMGGXConvolution",{envMap:{value:null},roughness:{value:0},lodBias:{value:0}},`
+
+		#define GGX_SAMPLES ${Rd}u
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float roughness;
+		uniform float lodBias;
+
+		#include <common>
+
+		// Van der Corput radical inverse
+		float radicalInverse_VdC( uint bits ) {
+
+			bits = ( bits << 16u ) | ( bits >> 16u );
+			bits = ( ( bits & 0x55555555u ) << 1u ) | ( ( bits & 0xAAAAAAAAu ) >> 1u );
+			bits = ( ( bits & 0x33333333u ) << 2u ) | ( ( bits & 0xCCCCCCCCu ) >> 2u );
+			bits = ( ( bits & 0x0F0F0F0Fu ) << 4u ) | ( ( bits & 0xF0F0F0F0u ) >> 4u );
+			bits = ( ( bits & 0x00FF00FFu ) << 8u ) | ( ( bits & 0xFF00FF00u ) >> 8u );
+			return float( bits ) * 2.3283064365386963e-10; // / 0x100000000
+
+		}
+
+		// Hammersley sequence
+		vec2 hammersley( uint i, uint N ) {
+
+			return vec2( float( i ) / float( N ), radicalInverse_VdC( i ) );
+
+		}
+
+		void main() {
+
+			vec3 N = normalize( vWorldDirection );
+
+			// For very low roughness, just sample the environment directly
+			if ( roughness < 0.001 ) {
+
+				gl_FragColor = vec4( textureLod( envMap, N, 0.0 ).rgb, 1.0 );
+				return;
+
+			}
+
+			float alpha = roughness * roughness;
+			float alpha2 = alpha * alpha;
+
+			// Tangent space basis for VNDF sampling
+			vec3 up = abs( N.z ) < 0.999 ? vec3( 0.0, 0.0, 1.0 ) : vec3( 1.0, 0.0, 0.0 );
+			vec3 tangent = normalize( cross( up, N ) );
+			vec3 bitangent = cross( N, tangent );
+
+			vec3 prefilteredColor = vec3( 0.0 );
+			float totalWeight = 0.0;
+
+			for ( uint i = 0u; i < GGX_SAMPLES; i ++ ) {
+
+				vec2 Xi = hammersley( i, GGX_SAMPLES );
+
+				// With V = N, sample the reflected direction directly.
+				float invQ = 1.0 / ( 1.0 - Xi.x + alpha2 * Xi.x );
+				float NdotL = ( 1.0 - Xi.x - alpha2 * Xi.x ) * invQ;
+
+				if ( NdotL > 0.0 ) {
+
+					float phi = 2.0 * PI * Xi.y;
+					float sinTheta = 2.0 * alpha * sqrt( Xi.x * ( 1.0 - Xi.x ) ) * invQ;
+					vec3 L = N * NdotL + ( tangent * cos( phi ) + bitangent * sin( phi ) ) * sinTheta;
+
+					// Match the source mip to the sample's solid angle. The terms
+					// independent of the sample are precomputed in lodBias.
+					float d = alpha2 * invQ;
+					float lod = max( log2( d ) + lodBias, 0.0 );
+
+					// Weight by NdotL for the split-sum approximation
+					prefilteredColor += textureLod( envMap, L, lod ).rgb * NdotL;
+					totalWeight += NdotL;
+
+				}
+
+			}
+
+			gl_FragColor = vec4( prefilteredColor / totalWeight, 1.0 );
+
+		}
+	`)}function G0(){return Us("PMREMGGXIntegration",{envMap:{value:null},roughness:{value:0},sourceLod:{value:0},sourceSize:{value:Cd}},`
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float roughness;
+		uniform float sourceLod;
+		uniform int sourceSize;
+
+		void main() {
+
+			vec3 N = normalize( vWorldDirection );
+
+			float alpha = roughness * roughness;
+			float alpha2 = alpha * alpha;
+
+			float texelSize = 2.0 / float( sourceSize );
+
+			vec3 prefilteredColor = vec3( 0.0 );
+			float totalWeight = 0.0;
+
+			// Pair opposite texels: only the one in N's hemisphere contributes.
+			for ( int face = 0; face < 3; face ++ ) {
+
+				for ( int y = 0; y < sourceSize; y ++ ) {
+
+					for ( int x = 0; x < sourceSize; x ++ ) {
+
+						vec2 uv = ( vec2( x, y ) + 0.5 ) * texelSize - 1.0;
+						vec3 texelDirection = face == 0 ? vec3( 1.0, uv ) : ( face == 1 ? vec3( uv.x, 1.0, uv.y ) : vec3( uv, 1.0 ) );
+
+						float invDistance = inversesqrt( 1.0 + dot( uv, uv ) );
+						float NdotL = dot( N, texelDirection );
+						texelDirection *= NdotL < 0.0 ? - 1.0 : 1.0;
+						NdotL = abs( NdotL ) * invDistance;
+
+						// With V = N, NdotH squared is ( 1 + NdotL ) / 2. Common factors
+						// in the GGX distribution and texel solid angle cancel when normalized.
+						float d = 1.0 + alpha2 + ( alpha2 - 1.0 ) * NdotL;
+						float weight = NdotL * invDistance * invDistance * invDistance / ( d * d );
+
+						prefilteredColor += textureLod( envMap, texelDirection, sourceLod ).rgb * weight;
+						totalWeight += weight;
+
+					}
+
+				}
+
+			}
+
+			gl_FragColor = vec4( prefilteredColor / totalWeight, 1.0 );
+
+		}
+	`)}function V0(){return Us("PMREMSphericalGaussianBlur",{envMap:{value:null},sigma:{value:0}},`
+
+		#define SAMPLES ${O0}
+		#define GOLDEN_ANGLE 2.39996322973
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float sigma;
+
+		#include <common>
+
+		void main() {
+
+			vec3 outputDirection = normalize( vWorldDirection );
+
+			vec3 up = abs( outputDirection.z ) < 0.999 ? vec3( 0.0, 0.0, 1.0 ) : vec3( 1.0, 0.0, 0.0 );
+			vec3 tangent = normalize( cross( up, outputDirection ) );
+			vec3 bitangent = cross( outputDirection, tangent );
+
+			// Truncate the kernel at three standard deviations or at the antipode.
+			float thetaMax = min( 3.0 * sigma, PI );
+			float truncation = 1.0 - exp( - 0.5 * thetaMax * thetaMax / ( sigma * sigma ) );
+
+			vec3 accumColor = vec3( 0.0 );
+			float accumWeight = 0.0;
+
+			for ( int i = 0; i < SAMPLES; i ++ ) {
+
+				// Stratified inverse-CDF sampling of the Gaussian, placed on a golden-angle spiral.
+				float stratum = ( float( i ) + 0.5 ) / float( SAMPLES );
+				float theta = sigma * sqrt( - 2.0 * log( 1.0 - stratum * truncation ) );
+				float phi = float( i ) * GOLDEN_ANGLE;
+
+				vec3 offset = cos( phi ) * tangent + sin( phi ) * bitangent;
+				vec3 sampleDirection = cos( theta ) * outputDirection + sin( theta ) * offset;
+
+				// Correct the planar sample density to solid angle.
+				float weight = sin( theta ) / theta;
+
+				accumColor += weight * textureLod( envMap, sampleDirection, 0.0 ).rgb;
+				accumWeight += weight;
+
+			}
+
+			gl_FragColor = vec4( accumColor / accumWeight, 1.0 );
+
+		}
+	`)}function Ld(){return Us("PMREMEquirectangularToCubemap",{envMap:{value:null}},`
+
+		varying vec3 vWorldDirection;
+
+		uniform sampler2D envMap;
+
+		#include <common>
+
+		void main() {
+
+			// Average four subpixel samples to preserve small, bright features.
+			vec3 direction = normalize( vWorldDirection );
+			vec3 dx = dFdx( direction ) * 0.25;
+			vec3 dy = dFdy( direction ) * 0.25;
+
+			vec3 color = textureLod( envMap, equirectUv( normalize( direction - dx - dy ) ), 0.0 ).rgb;
+			color += textureLod( envMap, equirectUv( normalize( direction + dx - dy ) ), 0.0 ).rgb;
+			color += textureLod( envMap, equirectUv( normalize( direction - dx + dy ) ), 0.0 ).rgb;
+			color += textureLod( envMap, equirectUv( normalize( direction + dx + dy ) ), 0.0 ).rgb;
+			gl_FragColor = vec4( color * 0.25, 1.0 );
+
+		}
+	`)}function Dd(){return Us("PMREMCubemapToCubemap",{envMap:{value:null},flipEnvMap:{value:-1}},`
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float flipEnvMap;
+
+		void main() {
+
+			gl_FragColor = vec4( textureCube( envMap, vec3( flipEnvMap * vWorldDirection.x, vWorldDirection.yz ) ).rgb, 1.0 );
+
+		}
+	`)}function W0(n){let e=new WeakMap,t=new WeakMap,i=null;function r(u,h=!1){return u==null?null:h?a(u):s(u)}function s(u){if(u&&u.isTexture){const h=u.mapping;if(h===hl||h===pl)if(e.has(u)){const g=e.get(u).texture;return o(g,u.mapping)}else{const g=u.image;if(g&&g.height>0){const x=new Lc(g.height);return x.fromEquirectangularTexture(n,u),e.set(u,x),u.addEventListener("dispose",c),o(x.texture,u.mapping)}else return null}}return u}function a(u){if(u&&u.isTexture&&u.isPMREMTexture!==!0){const h=u.mapping,g=h===hl||h===pl,x=h===br||h===Ts;if(g||x){let m=t.get(u);const p=m!==void 0?m.texture.pmremVersion:0;if(u.isRenderTargetTexture&&u.pmremVersion!==p)return i===null&&(i=new to(n)),m=g?i.fromEquirectangular(u,m):i.fromCubemap(u,m),m.texture.pmremVersion=u.pmremVersion,t.set(u,m),m.texture;if(m!==void 0)return m.texture;{const v=u.image;return g&&v&&v.height>0||x&&v&&l(v)?(i===null&&(i=new to(n)),m=g?i.fromEquirectangular(u):i.fromCubemap(u),m.texture.pmremVersion=u.pmremVersion,t.set(u,m),u.addEventListener("dispose",f),m.texture):null}}}return u}function o(u,h){return h===hl?u.mapping=br:h===pl&&(u.mapping=Ts),u}function l(u){let h=0;const g=6;for(let x=0;x<g;x++)u[x]!==void 0&&h++;return h===g}function c(u){const h=u.target;h.removeEventListener("dispose",c);const g=e.get(h);g!==void 0&&(e.delete(h),g.dispose())}function f(u){const h=u.target;h.removeEventListener("dispose",f);const g=t.get(h);g!==void 0&&(t.delete(h),g.dispose())}function d(){e=new WeakMap,t=new WeakMap,i!==null&&(i.dispose(),i=null)}return{get:r,dispose:d}}function X0(n){const e={};function t(i){if(e[i]!==void 0)return e[i];const r=n.getExtension(i);return e[i]=r,r}return{has:function(i){return t(i)!==null},init:function(){t("EXT_color_buffer_float"),t("WEBGL_clip_cull_distance"),t("OES_texture_float_linear"),t("EXT_color_buffer_half_float"),t("WEBGL_multisampled_render_to_texture"),t("WEBGL_render_shared_exponent")},get:function(i){const r=t(i);return r===null&&Ea("WebGLRenderer: "+i+" extension not supported."),r}}}function $0(n,e,t,i){const r={},s=new WeakMap,a=new FinalizationRegistry(g=>delete r[g]);function o(g){l(g.target)}function l(g){g.index!==null&&e.remove(g.index);for(const m in g.attributes)e.remove(g.attributes[m]);g.removeEventListener("dispose",o),delete r[g.id],a.unregister(g);const x=s.get(g);x&&(e.remove(x),s.delete(g)),i.releaseStatesOfGeometry(g),g.isInstancedBufferGeometry===!0&&delete g._maxInstanceCount,t.memory.geometries--}function c(g,x){return r[x.id]!==void 0||(x.addEventListener("dispose",o),r[x.id]=new WeakRef(x),a.register(x,x.id,x),t.memory.geometries++),x}function f(g){const x=g.attributes;for(const m in x)e.update(x[m],n.ARRAY_BUFFER)}function d(g){const x=g.index,m=g.attributes.position;let p=0;if(m===void 0)return;const v=x!==null?x.array.length:m.array.length/3-1,M=m.count>=65535?sd:rd,S=new M(Math.ceil(v/3)*6,1),b=S.array;if(x!==null){const _=x.array;p=x.version;for(let y=0,I=0;y<v;y+=3){const R=_[y+0],P=_[y+1],D=_[y+2];b[I++]=R,b[I++]=P,b[I++]=P,b[I++]=D,b[I++]=D,b[I++]=R}}else{p=m.version;for(let _=0,y=0;_<v;_+=3){const I=_+0,R=_+1,P=_+2;b[y++]=I,b[y++]=R,b[y++]=R,b[y++]=P,b[y++]=P,b[y++]=I}}S.version=p;const w=s.get(g);w&&e.remove(w),s.set(g,S)}function u(g){const x=s.get(g);if(x){const m=g.index;m!==null&&x.version<m.version&&d(g)}else d(g);return s.get(g)}function h(){for(const g in r){const x=r[g].deref();x!==void 0&&l(x)}}return{get:c,update:f,getWireframeAttribute:u,dispose:h}}function q0(n,e,t){let i;function r(d){i=d}let s,a;function o(d){s=d.type,a=d.bytesPerElement}function l(d,u){n.drawElements(i,u,s,d*a),t.update(u,i,1)}function c(d,u,h){h!==0&&(n.drawElementsInstanced(i,u,s,d*a,h),t.update(u,i,h))}function f(d,u,h){if(h===0)return;e.get("WEBGL_multi_draw").multiDrawElementsWEBGL(i,u,0,s,d,0,h);let x=0;for(let m=0;m<h;m++)x+=u[m];t.update(x,i,1)}this.setMode=r,this.setIndex=o,this.render=l,this.renderInstances=c,this.renderMultiDraw=f}function Y0(n){const e={geometries:0,textures:0},t={frame:0,calls:0,triangles:0,points:0,lines:0};function i(s,a,o){switch(t.calls++,a){case n.TRIANGLES:t.triangles+=o*(s/3);break;case n.LINES:t.lines+=o*(s/2);break;case n.LINE_STRIP:t.lines+=o*(s-1);break;case n.LINE_LOOP:t.lines+=o*s;break;case n.POINTS:t.points+=o*s;break;default:Ke("WebGLInfo: Unknown draw mode:",a);break}}function r(){t.calls=0,t.triangles=0,t.points=0,t.lines=0}return{memory:e,render:t,programs:null,autoReset:!0,reset:r,update:i}}function K0(n,e,t){const i=new WeakMap,r=new at;function s(a,o,l){const c=a.morphTargetInfluences,f=o.morphAttributes.position||o.morphAttributes.normal||o.morphAttributes.color,d=f!==void 0?f.length:0;let u=i.get(o);if(u===void 0||u.count!==d){let I=function(){_.dispose(),i.delete(o),o.removeEventListener("dispose",I)};u!==void 0&&u.texture.dispose();const h=o.morphAttributes.position!==void 0,g=o.morphAttributes.normal!==void 0,x=o.morphAttributes.color!==void 0,m=o.morphAttributes.position||[],p=o.morphAttributes.normal||[],v=o.morphAttributes.color||[];let M=0;h===!0&&(M=1),g===!0&&(M=2),x===!0&&(M=3);let S=o.attributes.position.count*M,b=1;S>e.maxTextureSize&&(b=Math.ceil(S/e.maxTextureSize),S=e.maxTextureSize);const w=new Float32Array(S*b*4*d),_=new $f(w,S,b,d);_.type=Bn,_.needsUpdate=!0;const y=M*4;for(let R=0;R<d;R++){const P=m[R],D=p[R],O=v[R],L=S*b*4*R;for(let k=0;k<P.count;k++){const V=k*y;h===!0&&(r.fromBufferAttribute(P,k),w[L+V+0]=r.x,w[L+V+1]=r.y,w[L+V+2]=r.z,w[L+V+3]=0),g===!0&&(r.fromBufferAttribute(D,k),w[L+V+4]=r.x,w[L+V+5]=r.y,w[L+V+6]=r.z,w[L+V+7]=0),x===!0&&(r.fromBufferAttribute(O,k),w[L+V+8]=r.x,w[L+V+9]=r.y,w[L+V+10]=r.z,w[L+V+11]=O.itemSize===4?r.w:1)}}u={count:d,texture:_,size:new He(S,b)},i.set(o,u),o.addEventListener("dispose",I)}if(a.isInstancedMesh===!0&&a.morphTexture!==null)l.getUniforms().setValue(n,"morphTexture",a.morphTexture,t);else{let h=0;for(let x=0;x<c.length;x++)h+=c[x];const g=o.morphTargetsRelative?1:1-h;l.getUniforms().setValue(n,"morphTargetBaseInfluence",g),l.getUniforms().setValue(n,"morphTargetInfluences",c)}l.getUniforms().setValue(n,"morphTargetsTexture",u.texture,t),l.getUniforms().setValue(n,"morphTargetsTextureSize",u.size)}return{update:s}}function Z0(n,e,t,i,r){let s=new WeakMap;function a(c){const f=r.render.frame,d=c.geometry,u=e.get(c,d);if(s.get(u)!==f&&(e.update(u),s.set(u,f)),c.isInstancedMesh&&(c.hasEventListener("dispose",l)===!1&&c.addEventListener("dispose",l),s.get(c)!==f&&(t.update(c.instanceMatrix,n.ARRAY_BUFFER),c.instanceColor!==null&&t.update(c.instanceColor,n.ARRAY_BUFFER),s.set(c,f))),c.isSkinnedMesh){const h=c.skeleton;s.get(h)!==f&&(h.update(),s.set(h,f))}return u}function o(){s=new WeakMap}function l(c){const f=c.target;f.removeEventListener("dispose",l),i.releaseStatesOfObject(f),t.remove(f.instanceMatrix),f.instanceColor!==null&&t.remove(f.instanceColor)}return{update:a,dispose:o}}const J0={[Mf]:"LINEAR_TONE_MAPPING",[yf]:"REINHARD_TONE_MAPPING",[bf]:"CINEON_TONE_MAPPING",[Ef]:"ACES_FILMIC_TONE_MAPPING",[Af]:"AGX_TONE_MAPPING",[wf]:"NEUTRAL_TONE_MAPPING",[Tf]:"CUSTOM_TONE_MAPPING"};function Q0(n,e,t,i,r,s){const a=new Rn(e,t,{type:n,depthBuffer:r,stencilBuffer:s,samples:i?4:0,storeMultisampledDepthBuffer:!1,storeMultisampledStencilBuffer:!1,resolveDepthBuffer:!1,resolveStencilBuffer:!1});let o=null,l=null,c=null;const f=new Hn;f.setAttribute("position",new Dn([-1,3,0,-1,-1,0,3,-1,0],3)),f.setAttribute("uv",new Dn([0,2,0,0,2,0],2));const d=new yg({uniforms:{tDiffuse:{value:null}},vertexShader:`
+			precision highp float;
+
+			uniform mat4 modelViewMatrix;
+			uniform mat4 projectionMatrix;
+
+			attribute vec3 position;
+			attribute vec2 uv;
+
+			varying vec2 vUv;
+
+			void main() {
+				vUv = uv;
+				gl_Position = projectionMatrix * modelViewMatrix * vec4( position, 1.0 );
+			}`,fragmentShader:`
+			precision highp float;
+
+			uniform sampler2D tDiffuse;
+
+			varying vec2 vUv;
+
+			#include <tonemapping_pars_fragment>
+			#include <colorspace_pars_fragment>
+
+			void main() {
+				gl_FragColor = texture2D( tDiffuse, vUv );
+
+				#ifdef LINEAR_TONE_MAPPING
+					gl_FragColor.rgb = LinearToneMapping( gl_FragColor.rgb );
+				#elif defined( REINHARD_TONE_MAPPING )
+					gl_FragColor.rgb = ReinhardToneMapping( gl_FragColor.rgb );
+				#elif defined( CINEON_TONE_MAPPING )
+					gl_FragColor.rgb = CineonToneMapping( gl_FragColor.rgb );
+				#elif defined( ACES_FILMIC_TONE_MAPPING )
+					gl_FragColor.rgb = ACESFilmicToneMapping( gl_FragColor.rgb );
+				#elif defined( AGX_TONE_MAPPING )
+					gl_FragColor.rgb = AgXToneMapping( gl_FragColor.rgb );
+				#elif defined( NEUTRAL_TONE_MAPPING )
+					gl_FragColor.rgb = NeutralToneMapping( gl_FragColor.rgb );
+				#elif defined( CUSTOM_TONE_MAPPING )
+					gl_FragColor.rgb = CustomToneMapping( gl_FragColor.rgb );
+				#endif
+
+				#ifdef SRGB_TRANSFER
+					gl_FragColor = sRGBTransferOETF( gl_FragColor );
+				#endif
+			}`,depthTest:!1,depthWrite:!1}),u=new hi(f,d),h=new Tg(-1,1,1,-1,0,1);let g=null,x=null,m=!1,p,v=null,M=[],S=!1;this.setSize=function(b,w){a.setSize(b,w),o!==null&&o.setSize(b,w),l!==null&&l.setSize(b,w);for(let _=0;_<M.length;_++){const y=M[_];y.setSize&&y.setSize(b,w)}},this.setEffects=function(b){M=b,S=M.length>0&&M[0].isRenderPass===!0;const w=a.width,_=a.height;M.length>0&&o===null&&(o=new Rn(w,_,{type:kn,depthBuffer:!1,stencilBuffer:!1}),l=new Rn(w,_,{type:kn,depthBuffer:!1,stencilBuffer:!1}));const y=r===!0&&M.some(I=>I.needsDepthTexture===!0);y!==(a.depthTexture!==null)&&(y===!0&&c===null&&(c=new Fr(w,_),s===!0&&(c.format=Ei,c.type=Er)),a.dispose(),a.depthTexture=y?c:null,a.resolveDepthBuffer=y,a.storeMultisampledDepthBuffer=y);for(let I=0;I<M.length;I++){const R=M[I];R.setSize&&R.setSize(w,_),y&&R.needsDepthTexture===!0&&R.setDepthTexture&&R.setDepthTexture(c)}},this.begin=function(b,w){if(m||b.toneMapping===si&&M.length===0)return!1;if(v=w,w!==null){const _=w.width,y=w.height;(a.width!==_||a.height!==y)&&this.setSize(_,y)}return S===!1&&b.setRenderTarget(a),p=b.toneMapping,b.toneMapping=si,!0},this.hasRenderPass=function(){return S},this.end=function(b,w){b.toneMapping=p,m=!0;let _=a,y=o;for(let I=0;I<M.length;I++){const R=M[I];R.enabled!==!1&&(R.render(b,y,_,w),R.needsSwap!==!1&&(_=y,y=y===o?l:o))}if(g!==b.outputColorSpace||x!==b.toneMapping){g=b.outputColorSpace,x=b.toneMapping,d.defines={},Xe.getTransfer(g)===et&&(d.defines.SRGB_TRANSFER="");const I=J0[x];I&&(d.defines[I]=""),d.needsUpdate=!0}d.uniforms.tDiffuse.value=_.texture,b.setRenderTarget(v),b.render(u,h),v=null,m=!1},this.isCompositing=function(){return m},this.dispose=function(){a.dispose(),o!==null&&o.dispose(),l!==null&&l.dispose(),f.dispose(),d.dispose()}}const Id=new Zt,Nd=new Fr(1,1),Ud=new gd(1),Fd=new $f,Od=new Qm,Bd=new md,kd=[],zd=[],Hd=new Float32Array(16),Gd=new Float32Array(9),Vd=new Float32Array(4);function Gr(n,e,t){const i=n[0];if(i<=0||i>0)return n;const r=e*t;let s=kd[r];if(s===void 0&&(s=new Float32Array(r),kd[r]=s),e!==0){i.toArray(s,0);for(let a=1,o=0;a!==e;++a)o+=t,n[a].toArray(s,o)}return s}function Et(n,e){if(n.length!==e.length)return!1;for(let t=0,i=n.length;t<i;t++)if(n[t]!==e[t])return!1;return!0}function Tt(n,e){for(let t=0,i=e.length;t<i;t++)n[t]=e[t]}function no(n,e){let t=zd[e];t===void 0&&(t=new Int32Array(e),zd[e]=t);for(let i=0;i!==e;++i)t[i]=n.allocateTextureUnit();return t}function j0(n,e){const t=this.cache;t[0]!==e&&(n.uniform1f(this.addr,e),t[0]=e)}function ev(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y)&&(n.uniform2f(this.addr,e.x,e.y),t[0]=e.x,t[1]=e.y);else{if(Et(t,e))return;n.uniform2fv(this.addr,e),Tt(t,e)}}function tv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y||t[2]!==e.z)&&(n.uniform3f(this.addr,e.x,e.y,e.z),t[0]=e.x,t[1]=e.y,t[2]=e.z);else if(e.r!==void 0)(t[0]!==e.r||t[1]!==e.g||t[2]!==e.b)&&(n.uniform3f(this.addr,e.r,e.g,e.b),t[0]=e.r,t[1]=e.g,t[2]=e.b);else{if(Et(t,e))return;n.uniform3fv(this.addr,e),Tt(t,e)}}function nv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y||t[2]!==e.z||t[3]!==e.w)&&(n.uniform4f(this.addr,e.x,e.y,e.z,e.w),t[0]=e.x,t[1]=e.y,t[2]=e.z,t[3]=e.w);else{if(Et(t,e))return;n.uniform4fv(this.addr,e),Tt(t,e)}}function iv(n,e){const t=this.cache,i=e.elements;if(i===void 0){if(Et(t,e))return;n.uniformMatrix2fv(this.addr,!1,e),Tt(t,e)}else{if(Et(t,i))return;Vd.set(i),n.uniformMatrix2fv(this.addr,!1,Vd),Tt(t,i)}}function rv(n,e){const t=this.cache,i=e.elements;if(i===void 0){if(Et(t,e))return;n.uniformMatrix3fv(this.addr,!1,e),Tt(t,e)}else{if(Et(t,i))return;Gd.set(i),n.uniformMatrix3fv(this.addr,!1,Gd),Tt(t,i)}}function sv(n,e){const t=this.cache,i=e.elements;if(i===void 0){if(Et(t,e))return;n.uniformMatrix4fv(this.addr,!1,e),Tt(t,e)}else{if(Et(t,i))return;Hd.set(i),n.uniformMatrix4fv(this.addr,!1,Hd),Tt(t,i)}}function av(n,e){const t=this.cache;t[0]!==e&&(n.uniform1i(this.addr,e),t[0]=e)}function ov(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y)&&(n.uniform2i(this.addr,e.x,e.y),t[0]=e.x,t[1]=e.y);else{if(Et(t,e))return;n.uniform2iv(this.addr,e),Tt(t,e)}}function lv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y||t[2]!==e.z)&&(n.uniform3i(this.addr,e.x,e.y,e.z),t[0]=e.x,t[1]=e.y,t[2]=e.z);else{if(Et(t,e))return;n.uniform3iv(this.addr,e),Tt(t,e)}}function cv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y||t[2]!==e.z||t[3]!==e.w)&&(n.uniform4i(this.addr,e.x,e.y,e.z,e.w),t[0]=e.x,t[1]=e.y,t[2]=e.z,t[3]=e.w);else{if(Et(t,e))return;n.uniform4iv(this.addr,e),Tt(t,e)}}function uv(n,e){const t=this.cache;t[0]!==e&&(n.uniform1ui(this.addr,e),t[0]=e)}function fv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y)&&(n.uniform2ui(this.addr,e.x,e.y),t[0]=e.x,t[1]=e.y);else{if(Et(t,e))return;n.uniform2uiv(this.addr,e),Tt(t,e)}}function dv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y||t[2]!==e.z)&&(n.uniform3ui(this.addr,e.x,e.y,e.z),t[0]=e.x,t[1]=e.y,t[2]=e.z);else{if(Et(t,e))return;n.uniform3uiv(this.addr,e),Tt(t,e)}}function hv(n,e){const t=this.cache;if(e.x!==void 0)(t[0]!==e.x||t[1]!==e.y||t[2]!==e.z||t[3]!==e.w)&&(n.uniform4ui(this.addr,e.x,e.y,e.z,e.w),t[0]=e.x,t[1]=e.y,t[2]=e.z,t[3]=e.w);else{if(Et(t,e))return;n.uniform4uiv(this.addr,e),Tt(t,e)}}function io(n){return n.version===0&&(n.compareFunction=kf,n.needsUpdate=!0),n}function pv(n,e,t){const i=this.cache,r=t.allocateTextureUnit();i[0]!==r&&(n.uniform1i(this.addr,r),i[0]=r);let s;this.type===n.SAMPLER_2D_SHADOW?s=io(Nd):s=Id,t.setTexture2D(e||s,r)}function mv(n,e,t){const i=this.cache,r=t.allocateTextureUnit();i[0]!==r&&(n.uniform1i(this.addr,r),i[0]=r),t.setTexture3D(e||Od,r)}function gv(n,e,t){const i=this.cache,r=t.allocateTextureUnit();i[0]!==r&&(n.uniform1i(this.addr,r),i[0]=r);let s;this.type===n.SAMPLER_CUBE_SHADOW?s=io(Ud):s=Bd,t.setTextureCube(e||s,r)}function _v(n,e,t){const i=this.cache,r=t.allocateTextureUnit();i[0]!==r&&(n.uniform1i(this.addr,r),i[0]=r),t.setTexture2DArray(e||Fd,r)}function vv(n){switch(n){case 5126:return j0;case 35664:return ev;case 35665:return tv;case 35666:return nv;case 35674:return iv;case 35675:return rv;case 35676:return sv;case 5124:case 35670:return av;case 35667:case 35671:return ov;case 35668:case 35672:return lv;case 35669:case 35673:return cv;case 5125:return uv;case 36294:return fv;case 36295:return dv;case 36296:return hv;case 35678:case 36198:case 36298:case 36306:case 35682:return pv;case 35679:case 36299:case 36307:return mv;case 35680:case 36300:case 36308:case 36293:return gv;case 36289:case 36303:case 36311:case 36292:return _v}}function xv(n,e){n.uniform1fv(this.addr,e)}function Sv(n,e){const t=Gr(e,this.size,2);n.uniform2fv(this.addr,t)}function Mv(n,e){const t=Gr(e,this.size,3);n.uniform3fv(this.addr,t)}function yv(n,e){const t=Gr(e,this.size,4);n.uniform4fv(this.addr,t)}function bv(n,e){const t=Gr(e,this.size,4);n.uniformMatrix2fv(this.addr,!1,t)}function Ev(n,e){const t=Gr(e,this.size,9);n.uniformMatrix3fv(this.addr,!1,t)}function Tv(n,e){const t=Gr(e,this.size,16);n.uniformMatrix4fv(this.addr,!1,t)}function Av(n,e){n.uniform1iv(this.addr,e)}function wv(n,e){n.uniform2iv(this.addr,e)}function Rv(n,e){n.uniform3iv(this.addr,e)}function Cv(n,e){n.uniform4iv(this.addr,e)}function Pv(n,e){n.uniform1uiv(this.addr,e)}function Lv(n,e){n.uniform2uiv(this.addr,e)}function Dv(n,e){n.uniform3uiv(this.addr,e)}function Iv(n,e){n.uniform4uiv(this.addr,e)}function Nv(n,e,t){const i=this.cache,r=e.length,s=no(t,r);Et(i,s)||(n.uniform1iv(this.addr,s),Tt(i,s));let a;this.type===n.SAMPLER_2D_SHADOW?a=io(Nd):a=Id;for(let o=0;o!==r;++o)t.setTexture2D(e[o]||a,s[o])}function Uv(n,e,t){const i=this.cache,r=e.length,s=no(t,r);Et(i,s)||(n.uniform1iv(this.addr,s),Tt(i,s));for(let a=0;a!==r;++a)t.setTexture3D(e[a]||Od,s[a])}function Fv(n,e,t){const i=this.cache,r=e.length,s=no(t,r);Et(i,s)||(n.uniform1iv(this.addr,s),Tt(i,s));let a;this.type===n.SAMPLER_CUBE_SHADOW?a=io(Ud):a=Bd;for(let o=0;o!==r;++o)t.setTextureCube(e[o]||a,s[o])}function Ov(n,e,t){const i=this.cache,r=e.length,s=no(t,r);Et(i,s)||(n.uniform1iv(this.addr,s),Tt(i,s));for(let a=0;a!==r;++a)t.setTexture2DArray(e[a]||Fd,s[a])}function Bv(n){switch(n){case 5126:return xv;case 35664:return Sv;case 35665:return Mv;case 35666:return yv;case 35674:return bv;case 35675:return Ev;case 35676:return Tv;case 5124:case 35670:return Av;case 35667:case 35671:return wv;case 35668:case 35672:return Rv;case 35669:case 35673:return Cv;case 5125:return Pv;case 36294:return Lv;case 36295:return Dv;case 36296:return Iv;case 35678:case 36198:case 36298:case 36306:case 35682:return Nv;case 35679:case 36299:case 36307:return Uv;case 35680:case 36300:case 36308:case 36293:return Fv;case 36289:case 36303:case 36311:case 36292:return Ov}}class kv{constructor(e,t,i){this.id=e,this.addr=i,this.cache=[],this.type=t.type,this.setValue=vv(t.type)}}class zv{constructor(e,t,i){this.id=e,this.addr=i,this.cache=[],this.type=t.type,this.size=t.size,this.setValue=Bv(t.type)}}class Hv{constructor(e){this.id=e,this.seq=[],this.map={}}setValue(e,t,i){const r=this.seq;for(let s=0,a=r.length;s!==a;++s){const o=r[s];o.setValue(e,t[o.id],i)}}}const Dc=/(\w+)(\])?(\[|\.)?/g;function Wd(n,e){n.seq.push(e),n.map[e.id]=e}function Gv(n,e,t){const i=n.name,r=i.length;for(Dc.lastIndex=0;;){const s=Dc.exec(i),a=Dc.lastIndex;let o=s[1];const l=s[2]==="]",c=s[3];if(l&&(o=o|0),c===void 0||c==="["&&a+2===r){Wd(t,c===void 0?new kv(o,n,e):new zv(o,n,e));break}else{let d=t.map[o];d===void 0&&(d=new Hv(o),Wd(t,d)),t=d}}}class ro{constructor(e,t){this.seq=[],this.map={};const i=e.getProgramParameter(t,e.ACTIVE_UNIFORMS);for(let a=0;a<i;++a){const o=e.getActiveUniform(t,a),l=e.getUniformLocation(t,o.name);Gv(o,l,this)}const r=[],s=[];for(const a of this.seq)a.type===e.SAMPLER_2D_SHADOW||a.type===e.SAMPLER_CUBE_SHADOW||a.type===e.SAMPLER_2D_ARRAY_SHADOW?r.push(a):s.push(a);r.length>0&&(this.seq=r.concat(s))}setValue(e,t,i,r){const s=this.map[t];s!==void 0&&s.setValue(e,i,r)}setOptional(e,t,i){const r=t[i];r!==void 0&&this.setValue(e,i,r)}static upload(e,t,i,r){for(let s=0,a=t.length;s!==a;++s){const o=t[s],l=i[o.id];l.needsUpdate!==!1&&o.setValue(e,l.value,r)}}static seqWithValue(e,t){const i=[];for(let r=0,s=e.length;r!==s;++r){const a=e[r];a.id in t&&i.push(a)}return i}}function Xd(n,e,t){const i=n.createShader(e);return n.shaderSource(i,t),n.compileShader(i),i}const Vv=37297;let Wv=0;function Xv(n,e){const t=n.split(`
+`),i=[],r=Math.max(e-6,0),s=Math.min(e+6,t.length);for(let a=r;a<s;a++){const o=a+1;i.push(`${o===e?">":" "} ${o}: ${t[a]}`)}return i.join(`
+`)}const $d=new Fe;function $v(n){Xe._getMatrix($d,Xe.workingColorSpace,n);const e=`mat3( ${$d.elements.map(t=>t.toFixed(4))} )`;switch(Xe.getTransfer(n)){case Ma:return[e,"LinearTransferOETF"];case et:return[e,"sRGBTransferOETF"];default:return Pe("WebGLProgram: Unsupported color space: ",n),[e,"LinearTransferOETF"]}}function qd(n,e,t){const i=n.getShaderParameter(e,n.COMPILE_STATUS),s=(n.getShaderInfoLog(e)||"").trim();if(i&&s==="")return"";const a=/ERROR: 0:(\d+)/.exec(s);if(a){const o=parseInt(a[1]);return t.toUpperCase()+`
+
+`+s+`
+
+`+Xv(n.getShaderSource(e),o)}else return s}function qv(n,e){const t=$v(e);return[`vec4 ${n}( vec4 value ) {`,`	return ${t[1]}( vec4( ${t[0]} * value.rgb, value.a ) );`,"}"].join(`
+`)}const Yv={[Mf]:"Linear",[yf]:"Reinhard",[bf]:"Cineon",[Ef]:"ACESFilmic",[Af]:"AgX",[wf]:"Neutral",[Tf]:"Custom"};function Kv(n,e){const t=Yv[e];return t===void 0?(Pe("WebGLProgram: Unsupported toneMapping:",e),"vec3 "+n+"( vec3 color ) { return LinearToneMapping( color ); }"):"vec3 "+n+"( vec3 color ) { return "+t+"ToneMapping( color ); }"}const so=new N;function Zv(){Xe.getLuminanceCoefficients(so);const n=so.x.toFixed(4),e=so.y.toFixed(4),t=so.z.toFixed(4);return["float luminance( const in vec3 rgb ) {",`	const vec3 weights = vec3( ${n}, ${e}, ${t} );`,"	return dot( weights, rgb );","}"].join(`
+`)}function Jv(n){return[n.extensionClipCullDistance?"#extension GL_ANGLE_clip_cull_distance : require":"",n.extensionMultiDraw?"#extension GL_ANGLE_multi_draw : require":""].filter(Fs).join(`
+`)}function Qv(n){const e=[];for(const t in n){const i=n[t];i!==!1&&e.push("#define "+t+" "+i)}return e.join(`
+`)}function jv(n,e){const t={},i=n.getProgramParameter(e,n.ACTIVE_ATTRIBUTES);for(let r=0;r<i;r++){const s=n.getActiveAttrib(e,r),a=s.name;let o=1;s.type===n.FLOAT_MAT2&&(o=2),s.type===n.FLOAT_MAT3&&(o=3),s.type===n.FLOAT_MAT4&&(o=4),t[a]={type:s.type,location:n.getAttribLocation(e,a),locationSize:o}}return t}function Fs(n){return n!==""}function Yd(n,e){const t=e.numSpotLightShadows+e.numSpotLightMaps-e.numSpotLightShadowsWithMaps;return n.replace(/NUM_SUN_LIGHTS/g,e.numSunLights).replace(/NUM_DIR_LIGHTS/g,e.numDirLights).replace(/NUM_SPOT_LIGHTS/g,e.numSpotLights).replace(/NUM_SPOT_LIGHT_MAPS/g,e.numSpotLightMaps).replace(/NUM_SPOT_LIGHT_COORDS/g,t).replace(/NUM_RECT_AREA_LIGHTS/g,e.numRectAreaLights).replace(/NUM_POINT_LIGHTS/g,e.numPointLights).replace(/NUM_HEMI_LIGHTS/g,e.numHemiLights).replace(/NUM_SUN_LIGHT_SHADOWS/g,e.numSunLightShadows).replace(/NUM_DIR_LIGHT_SHADOWS/g,e.numDirLightShadows).replace(/NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS/g,e.numSpotLightShadowsWithMaps).replace(/NUM_SPOT_LIGHT_SHADOWS/g,e.numSpotLightShadows).replace(/NUM_POINT_LIGHT_SHADOWS/g,e.numPointLightShadows).replace(/NUM_LIGHT_PROBE_GRIDS/g,e.numLightProbeGrids)}function Kd(n,e){return n.replace(/NUM_CLIPPING_PLANES/g,e.numClippingPlanes).replace(/UNION_CLIPPING_PLANES/g,e.numClippingPlanes-e.numClipIntersection)}const ex=/^[ \t]*#include +<([\w\d./]+)>/gm;function Ic(n){return n.replace(ex,tx)}function tx(n,e){const t=ke[e];if(t===void 0)throw new Error("THREE.WebGLProgram: Can not resolve #include <"+e+">");return Ic(t)}const nx=/#pragma unroll_loop_start\s+for\s*\(\s*int\s+i\s*=\s*(\d+)\s*;\s*i\s*<\s*(\d+)\s*;\s*i\s*\+\+\s*\)\s*{([\s\S]+?)}\s+#pragma unroll_loop_end/g;function Zd(n){return n.replace(nx,ix)}function ix(n,e,t,i){let r="";for(let s=parseInt(e);s<parseInt(t);s++)r+=i.replace(/\[\s*i\s*\]/g,"[ "+s+" ]").replace(/UNROLLED_LOOP_INDEX/g,s);return r}function Jd(n){let e=`precision ${n.precision} float;
+	precision ${n.precision} int;
+	precision ${n.precision} sampler2D;
+	precision ${n.precision} samplerCube;
+	precision ${n.precision} sampler3D;
+	precision ${n.precision} sampler2DArray;
+	precision ${n.precision} sampler2DShadow;
+	precision ${n.precision} samplerCubeShadow;
+	precision ${n.precision} sampler2DArrayShadow;
+	precision ${n.precision} isampler2D;
+	precision ${n.precision} isampler3D;
+	precision ${n.precision} isamplerCube;
+	precision ${n.precision} isampler2DArray;
+	precision ${n.precision} usampler2D;
+	precision ${n.precision} usampler3D;
+	precision ${n.precision} usamplerCube;
+	precision ${n.precision} usampler2DArray;
+	`;return n.precision==="highp"?e+=`
+#define HIGH_PRECISION`:n.precision==="mediump"?e+=`
+#define MEDIUM_PRECISION`:n.precision==="lowp"&&(e+=`
+#define LOW_PRECISION`),e}const rx={[da]:"SHADOWMAP_TYPE_PCF",[ys]:"SHADOWMAP_TYPE_VSM"};function sx(n){return rx[n.shadowMapType]||"SHADOWMAP_TYPE_BASIC"}const ax={[Ts]:"ENVMAP_MODE_REFRACTION"};function ox(n){return n.envMap===!1?"ENVMAP_MODE_REFLECTION":ax[n.envMapMode]||"ENVMAP_MODE_REFLECTION"}const lx={[Sf]:"ENVMAP_BLENDING_MULTIPLY",[wm]:"ENVMAP_BLENDING_MIX",[Rm]:"ENVMAP_BLENDING_ADD"};function cx(n){return n.envMap===!1?"ENVMAP_BLENDING_NONE":lx[n.combine]||"ENVMAP_BLENDING_NONE"}function ux(n,e,t,i){const r=n.getContext(),s=t.defines;let a=t.vertexShader,o=t.fragmentShader;const l=sx(t),c=t.envMapPMREM===!0?"ENVMAP_TYPE_PMREM":"ENVMAP_TYPE_CUBE",f=ox(t),d=cx(t),u=Jv(t),h=Qv(s),g=r.createProgram();let x,m,p=t.glslVersion?"#version "+t.glslVersion+`
+`:"";t.isRawShaderMaterial?(x=["#define SHADER_TYPE "+t.shaderType,"#define SHADER_NAME "+t.shaderName,h].filter(Fs).join(`
+`),x.length>0&&(x+=`
+`),m=["#define SHADER_TYPE "+t.shaderType,"#define SHADER_NAME "+t.shaderName,h].filter(Fs).join(`
+`),m.length>0&&(m+=`
+`)):(x=[Jd(t),"#define SHADER_TYPE "+t.shaderType,"#define SHADER_NAME "+t.shaderName,h,t.extensionClipCullDistance?"#define USE_CLIP_DISTANCE":"",t.batching?"#define USE_BATCHING":"",t.batchingColor?"#define USE_BATCHING_COLOR":"",t.instancing?"#define USE_INSTANCING":"",t.instancingColor?"#define USE_INSTANCING_COLOR":"",t.instancingMorph?"#define USE_INSTANCING_MORPH":"",t.useFog&&t.fog?"#define USE_FOG":"",t.useFog&&t.fogExp2?"#define FOG_EXP2":"",t.map?"#define USE_MAP":"",t.envMap?"#define USE_ENVMAP":"",t.envMap?"#define "+f:"",t.lightMap?"#define USE_LIGHTMAP":"",t.aoMap?"#define USE_AOMAP":"",t.bumpMap?"#define USE_BUMPMAP":"",t.normalMap?"#define USE_NORMALMAP":"",t.normalMapObjectSpace?"#define USE_NORMALMAP_OBJECTSPACE":"",t.normalMapTangentSpace?"#define USE_NORMALMAP_TANGENTSPACE":"",t.displacementMap?"#define USE_DISPLACEMENTMAP":"",t.emissiveMap?"#define USE_EMISSIVEMAP":"",t.anisotropy?"#define USE_ANISOTROPY":"",t.anisotropyMap?"#define USE_ANISOTROPYMAP":"",t.clearcoatMap?"#define USE_CLEARCOATMAP":"",t.clearcoatRoughnessMap?"#define USE_CLEARCOAT_ROUGHNESSMAP":"",t.clearcoatNormalMap?"#define USE_CLEARCOAT_NORMALMAP":"",t.diffuseRoughnessMap?"#define USE_DIFFUSE_ROUGHNESSMAP":"",t.iridescenceMap?"#define USE_IRIDESCENCEMAP":"",t.iridescenceThicknessMap?"#define USE_IRIDESCENCE_THICKNESSMAP":"",t.specularMap?"#define USE_SPECULARMAP":"",t.specularColorMap?"#define USE_SPECULAR_COLORMAP":"",t.specularIntensityMap?"#define USE_SPECULAR_INTENSITYMAP":"",t.roughnessMap?"#define USE_ROUGHNESSMAP":"",t.metalnessMap?"#define USE_METALNESSMAP":"",t.alphaMap?"#define USE_ALPHAMAP":"",t.alphaHash?"#define USE_ALPHAHASH":"",t.transmission?"#define USE_TRANSMISSION":"",t.transmissionMap?"#define USE_TRANSMISSIONMAP":"",t.thicknessMap?"#define USE_THICKNESSMAP":"",t.sheenColorMap?"#define USE_SHEEN_COLORMAP":"",t.sheenRoughnessMap?"#define USE_SHEEN_ROUGHNESSMAP":"",t.mapUv?"#define MAP_UV "+t.mapUv:"",t.alphaMapUv?"#define ALPHAMAP_UV "+t.alphaMapUv:"",t.lightMapUv?"#define LIGHTMAP_UV "+t.lightMapUv:"",t.aoMapUv?"#define AOMAP_UV "+t.aoMapUv:"",t.emissiveMapUv?"#define EMISSIVEMAP_UV "+t.emissiveMapUv:"",t.bumpMapUv?"#define BUMPMAP_UV "+t.bumpMapUv:"",t.normalMapUv?"#define NORMALMAP_UV "+t.normalMapUv:"",t.displacementMapUv?"#define DISPLACEMENTMAP_UV "+t.displacementMapUv:"",t.metalnessMapUv?"#define METALNESSMAP_UV "+t.metalnessMapUv:"",t.roughnessMapUv?"#define ROUGHNESSMAP_UV "+t.roughnessMapUv:"",t.anisotropyMapUv?"#define ANISOTROPYMAP_UV "+t.anisotropyMapUv:"",t.clearcoatMapUv?"#define CLEARCOATMAP_UV "+t.clearcoatMapUv:"",t.clearcoatNormalMapUv?"#define CLEARCOAT_NORMALMAP_UV "+t.clearcoatNormalMapUv:"",t.clearcoatRoughnessMapUv?"#define CLEARCOAT_ROUGHNESSMAP_UV "+t.clearcoatRoughnessMapUv:"",t.diffuseRoughnessMapUv?"#define DIFFUSE_ROUGHNESSMAP_UV "+t.diffuseRoughnessMapUv:"",t.iridescenceMapUv?"#define IRIDESCENCEMAP_UV "+t.iridescenceMapUv:"",t.iridescenceThicknessMapUv?"#define IRIDESCENCE_THICKNESSMAP_UV "+t.iridescenceThicknessMapUv:"",t.sheenColorMapUv?"#define SHEEN_COLORMAP_UV "+t.sheenColorMapUv:"",t.sheenRoughnessMapUv?"#define SHEEN_ROUGHNESSMAP_UV "+t.sheenRoughnessMapUv:"",t.specularMapUv?"#define SPECULARMAP_UV "+t.specularMapUv:"",t.specularColorMapUv?"#define SPECULAR_COLORMAP_UV "+t.specularColorMapUv:"",t.specularIntensityMapUv?"#define SPECULAR_INTENSITYMAP_UV "+t.specularIntensityMapUv:"",t.transmissionMapUv?"#define TRANSMISSIONMAP_UV "+t.transmissionMapUv:"",t.thicknessMapUv?"#define THICKNESSMAP_UV "+t.thicknessMapUv:"",t.vertexTangents&&t.flatShading===!1?"#define USE_TANGENT":"",t.vertexNormals?"#define HAS_NORMAL":"",t.vertexColors?"#define USE_COLOR":"",t.vertexAlphas?"#define USE_COLOR_ALPHA":"",t.vertexUv1s?"#define USE_UV1":"",t.vertexUv2s?"#define USE_UV2":"",t.vertexUv3s?"#define USE_UV3":"",t.pointsUvs?"#define USE_POINTS_UV":"",t.flatShading?"#define FLAT_SHADED":"",t.skinning?"#define USE_SKINNING":"",t.morphTargets?"#define USE_MORPHTARGETS":"",t.morphNormals&&t.flatShading===!1?"#define USE_MORPHNORMALS":"",t.morphColors?"#define USE_MORPHCOLORS":"",t.morphTargetsCount>0?"#define MORPHTARGETS_TEXTURE_STRIDE "+t.morphTextureStride:"",t.morphTargetsCount>0?"#define MORPHTARGETS_COUNT "+t.morphTargetsCount:"",t.doubleSided?"#define DOUBLE_SIDED":"",t.flipSided?"#define FLIP_SIDED":"",t.shadowMapEnabled?"#define USE_SHADOWMAP":"",t.shadowMapEnabled?"#define "+l:"",t.sizeAttenuation?"#define USE_SIZEATTENUATION":"",t.numLightProbes>0?"#define USE_LIGHT_PROBES":"",t.logarithmicDepthBuffer?"#define USE_LOGARITHMIC_DEPTH_BUFFER":"",t.reversedDepthBuffer?"#define USE_REVERSED_DEPTH_BUFFER":"","uniform mat4 modelMatrix;","uniform mat4 modelViewMatrix;","uniform mat4 projectionMatrix;","uniform mat4 viewMatrix;","uniform mat3 normalMatrix;","uniform vec3 cameraPosition;","uniform bool isOrthographic;","#ifdef USE_INSTANCING","	attribute mat4 instanceMatrix;","#endif","#ifdef USE_INSTANCING_COLOR","	attribute vec3 instanceColor;","#endif","#ifdef USE_INSTANCING_MORPH","	uniform sampler2D morphTexture;","#endif","attribute vec3 position;","attribute vec3 normal;","attribute vec2 uv;","#ifdef USE_UV1","	attribute vec2 uv1;","#endif","#ifdef USE_UV2","	attribute vec2 uv2;","#endif","#ifdef USE_UV3","	attribute vec2 uv3;","#endif","#ifdef USE_TANGENT","	attribute vec4 tangent;","#endif","#if defined( USE_COLOR_ALPHA )","	attribute vec4 color;","#elif defined( USE_COLOR )","	attribute vec3 color;","#endif","#ifdef USE_SKINNING","	attribute vec4 skinIndex;","	attribute vec4 skinWeight;","#endif",`
+`].filter(Fs).join(`
+`),m=[Jd(t),"#define SHADER_TYPE "+t.shaderType,"#define SHADER_NAME "+t.shaderName,h,t.useFog&&t.fog?"#define USE_FOG":"",t.useFog&&t.fogExp2?"#define FOG_EXP2":"",t.alphaToCoverage?"#define ALPHA_TO_COVERAGE":"",t.map?"#define USE_MAP":"",t.matcap?"#define USE_MATCAP":"",t.envMap?"#define USE_ENVMAP":"",t.envMap?"#define "+c:"",t.envMap?"#define "+f:"",t.envMap?"#define "+d:"",t.envMapPMREM?"#define ENVMAP_MAX_LOD "+t.envMapMaxLod+".0":"",t.envMapPMREM?"#define ENVMAP_SIZE "+t.envMapSize+".0":"",t.lightMap?"#define USE_LIGHTMAP":"",t.aoMap?"#define USE_AOMAP":"",t.bumpMap?"#define USE_BUMPMAP":"",t.normalMap?"#define USE_NORMALMAP":"",t.normalMapObjectSpace?"#define USE_NORMALMAP_OBJECTSPACE":"",t.normalMapTangentSpace?"#define USE_NORMALMAP_TANGENTSPACE":"",t.packedNormalMap?"#define USE_PACKED_NORMALMAP":"",t.emissiveMap?"#define USE_EMISSIVEMAP":"",t.anisotropy?"#define USE_ANISOTROPY":"",t.anisotropyMap?"#define USE_ANISOTROPYMAP":"",t.clearcoat?"#define USE_CLEARCOAT":"",t.clearcoatMap?"#define USE_CLEARCOATMAP":"",t.clearcoatRoughnessMap?"#define USE_CLEARCOAT_ROUGHNESSMAP":"",t.clearcoatNormalMap?"#define USE_CLEARCOAT_NORMALMAP":"",t.diffuseRoughness?"#define USE_DIFFUSE_ROUGHNESS":"",t.diffuseRoughnessMap?"#define USE_DIFFUSE_ROUGHNESSMAP":"",t.dispersion?"#define USE_DISPERSION":"",t.retroreflection?"#define USE_RETROREFLECTION":"",t.iridescence?"#define USE_IRIDESCENCE":"",t.iridescenceMap?"#define USE_IRIDESCENCEMAP":"",t.iridescenceThicknessMap?"#define USE_IRIDESCENCE_THICKNESSMAP":"",t.specularMap?"#define USE_SPECULARMAP":"",t.specularColorMap?"#define USE_SPECULAR_COLORMAP":"",t.specularIntensityMap?"#define USE_SPECULAR_INTENSITYMAP":"",t.roughnessMap?"#define USE_ROUGHNESSMAP":"",t.metalnessMap?"#define USE_METALNESSMAP":"",t.alphaMap?"#define USE_ALPHAMAP":"",t.alphaTest?"#define USE_ALPHATEST":"",t.alphaHash?"#define USE_ALPHAHASH":"",t.sheen?"#define USE_SHEEN":"",t.sheenColorMap?"#define USE_SHEEN_COLORMAP":"",t.sheenRoughnessMap?"#define USE_SHEEN_ROUGHNESSMAP":"",t.transmission?"#define USE_TRANSMISSION":"",t.transmissionMap?"#define USE_TRANSMISSIONMAP":"",t.thicknessMap?"#define USE_THICKNESSMAP":"",t.vertexTangents&&t.flatShading===!1?"#define USE_TANGENT":"",t.vertexColors||t.instancingColor?"#define USE_COLOR":"",t.vertexAlphas||t.batchingColor?"#define USE_COLOR_ALPHA":"",t.vertexUv1s?"#define USE_UV1":"",t.vertexUv2s?"#define USE_UV2":"",t.vertexUv3s?"#define USE_UV3":"",t.pointsUvs?"#define USE_POINTS_UV":"",t.gradientMap?"#define USE_GRADIENTMAP":"",t.flatShading?"#define FLAT_SHADED":"",t.doubleSided?"#define DOUBLE_SIDED":"",t.flipSided?"#define FLIP_SIDED":"",t.shadowMapEnabled?"#define USE_SHADOWMAP":"",t.shadowMapEnabled?"#define "+l:"",t.premultipliedAlpha?"#define PREMULTIPLIED_ALPHA":"",t.numLightProbes>0?"#define USE_LIGHT_PROBES":"",t.decodeVideoTexture?"#define DECODE_VIDEO_TEXTURE":"",t.decodeVideoTextureEmissive?"#define DECODE_VIDEO_TEXTURE_EMISSIVE":"",t.logarithmicDepthBuffer?"#define USE_LOGARITHMIC_DEPTH_BUFFER":"",t.reversedDepthBuffer?"#define USE_REVERSED_DEPTH_BUFFER":"","uniform mat4 viewMatrix;","uniform vec3 cameraPosition;","uniform bool isOrthographic;",t.toneMapping!==si?"#define TONE_MAPPING":"",t.toneMapping!==si?ke.tonemapping_pars_fragment:"",t.toneMapping!==si?Kv("toneMapping",t.toneMapping):"",t.dithering?"#define DITHERING":"",t.opaque?"#define OPAQUE":"",ke.colorspace_pars_fragment,qv("linearToOutputTexel",t.outputColorSpace),Zv(),t.useDepthPacking?"#define DEPTH_PACKING "+t.depthPacking:"",`
+`].filter(Fs).join(`
+`)),a=Ic(a),a=Yd(a,t),a=Kd(a,t),o=Ic(o),o=Yd(o,t),o=Kd(o,t),a=Zd(a),o=Zd(o),t.isRawShaderMaterial!==!0&&(p=`#version 300 es
+`,x=[u,"#define attribute in","#define varying out","#define texture2D texture"].join(`
+`)+`
+`+x,m=["#define varying in",t.glslVersion===tc?"":"layout(location = 0) out highp vec4 pc_fragColor;",t.glslVersion===tc?"":"#define gl_FragColor pc_fragColor","#define gl_FragDepthEXT gl_FragDepth","#define texture2D texture","#define textureCube texture","#define texture2DProj textureProj","#define texture2DLodEXT textureLod","#define texture2DProjLodEXT textureProjLod","#define textureCubeLodEXT textureLod","#define texture2DGradEXT textureGrad","#define texture2DProjGradEXT textureProjGrad","#define textureCubeGradEXT textureGrad"].join(`
+`)+`
+`+m);const v=p+x+a,M=p+m+o,S=Xd(r,r.VERTEX_SHADER,v),b=Xd(r,r.FRAGMENT_SHADER,M);r.attachShader(g,S),r.attachShader(g,b),t.index0AttributeName!==void 0?r.bindAttribLocation(g,0,t.index0AttributeName):t.hasPositionAttribute===!0&&r.bindAttribLocation(g,0,"position"),r.linkProgram(g);function w(R){if(n.debug.checkShaderErrors){const P=r.getProgramInfoLog(g)||"",D=r.getShaderInfoLog(S)||"",O=r.getShaderInfoLog(b)||"",L=P.trim(),k=D.trim(),V=O.trim();let W=!0,te=!0;if(r.getProgramParameter(g,r.LINK_STATUS)===!1)if(W=!1,typeof n.debug.onShaderError=="function")n.debug.onShaderError(r,g,S,b);else{const $=qd(r,S,"vertex"),j=qd(r,b,"fragment");Ke("WebGLProgram: Shader Error "+r.getError()+" - VALIDATE_STATUS "+r.getProgramParameter(g,r.VALIDATE_STATUS)+`
+
+Material Name: `+R.name+`
+Material Type: `+R.type+`
+
+Program Info Log: `+L+`
+`+$+`
+`+j)}else L!==""?Pe("WebGLProgram: Program Info Log:",L):(k===""||V==="")&&(te=!1);te&&(R.diagnostics={runnable:W,programLog:L,vertexShader:{log:k,prefix:x},fragmentShader:{log:V,prefix:m}})}r.deleteShader(S),r.deleteShader(b),_=new ro(r,g),y=jv(r,g)}let _;this.getUniforms=function(){return _===void 0&&w(this),_};let y;this.getAttributes=function(){return y===void 0&&w(this),y};let I=t.rendererExtensionParallelShaderCompile===!1;return this.isReady=function(){return I===!1&&(I=r.getProgramParameter(g,Vv)),I},this.destroy=function(){i.releaseStatesOfProgram(this),r.deleteProgram(g),this.program=void 0},this.type=t.shaderType,this.name=t.shaderName,this.id=Wv++,this.cacheKey=e,this.usedTimes=1,this.program=g,this.vertexShader=S,this.fragmentShader=b,this}let fx=0;class dx{constructor(){this.shaderCache=new Map,this.materialCache=new Map}update(e,t,i){const r=this._getShaderCacheForMaterial(e);return r.has(t)===!1&&(r.add(t),t.usedTimes++),r.has(i)===!1&&(r.add(i),i.usedTimes++),this}remove(e){const t=this.materialCache.get(e);for(const i of t)i.usedTimes--,i.usedTimes===0&&this.shaderCache.delete(i.code);return this.materialCache.delete(e),this}getVertexShaderStage(e){return this._getShaderStage(e.vertexShader)}getFragmentShaderStage(e){return this._getShaderStage(e.fragmentShader)}dispose(){this.shaderCache.clear(),this.materialCache.clear()}_getShaderCacheForMaterial(e){const t=this.materialCache;let i=t.get(e);return i===void 0&&(i=new Set,t.set(e,i)),i}_getShaderStage(e){const t=this.shaderCache;let i=t.get(e);return i===void 0&&(i=new hx(e),t.set(e,i)),i}}class hx{constructor(e){this.id=fx++,this.code=e,this.usedTimes=0}}function px(n){return n===Zi||n===va||n===xa}function mx(n,e,t,i,r,s){const a=new Kf,o=new dx,l=new Set,c=[],f=new Map,d=i.logarithmicDepthBuffer,u={MeshDepthMaterial:"depth",MeshDistanceMaterial:"distance",MeshNormalMaterial:"normal",MeshBasicMaterial:"basic",MeshLambertMaterial:"lambert",MeshPhongMaterial:"phong",MeshToonMaterial:"toon",MeshStandardMaterial:"physical",MeshPhysicalMaterial:"physical",MeshMatcapMaterial:"matcap",LineBasicMaterial:"basic",LineDashedMaterial:"dashed",PointsMaterial:"points",ShadowMaterial:"shadow",SpriteMaterial:"sprite"};function h(_){return l.add(_),_===0?"uv":`uv${_}`}function g(_,y,I,R,P,D){const O=R.fog,L=P.geometry,k=_.isMeshStandardMaterial||_.isMeshLambertMaterial||_.isMeshPhongMaterial?R.environment:null,V=_.isMeshStandardMaterial||_.isMeshLambertMaterial&&!_.envMap||_.isMeshPhongMaterial&&!_.envMap,W=e.get(_.envMap||k,V),te=u[_.type];let $=i.precision;_.precision!==null&&($=i.getMaxPrecision(_.precision),$!==_.precision&&Pe("WebGLProgram.getParameters:",_.precision,"not supported, using",$,"instead."));const j=L.morphAttributes.position||L.morphAttributes.normal||L.morphAttributes.color,ee=j!==void 0?j.length:0;let Se=0;L.morphAttributes.position!==void 0&&(Se=1),L.morphAttributes.normal!==void 0&&(Se=2),L.morphAttributes.color!==void 0&&(Se=3);let De,Z,fe,xe;if(te){const _e=Wn[te];De=_e.vertexShader,Z=_e.fragmentShader}else{De=_.vertexShader,Z=_.fragmentShader;const _e=o.getVertexShaderStage(_),nt=o.getFragmentShaderStage(_);o.update(_,_e,nt),fe=_e.id,xe=nt.id}const we=n.getRenderTarget(),ge=n.state.buffers.depth.getReversed(),Ie=P.isInstancedMesh===!0,mt=P.isBatchedMesh===!0,Re=!!_.map,$e=!!_.matcap,rt=!!W,Ge=rt&&W.isPMREMTexture===!0,Ht=!!_.aoMap,Ct=!!_.lightMap,sn=!!_.bumpMap&&_.wireframe===!1,dt=!!_.normalMap,jn=!!_.displacementMap,It=!!_.emissiveMap,yn=!!_.metalnessMap,bn=!!_.roughnessMap,En=_.anisotropy>0,B=_.clearcoat>0,Tn=_.diffuseRoughness>0,ut=_.dispersion>0,ft=_.retroreflectivity>0,pe=_.iridescence>0,Pt=_.sheen>0,Ce=_.transmission>0,Ne=En&&!!_.anisotropyMap,C=B&&!!_.clearcoatMap,E=B&&!!_.clearcoatNormalMap,H=B&&!!_.clearcoatRoughnessMap,ne=Tn&&!!_.diffuseRoughnessMap,Q=pe&&!!_.iridescenceMap,ae=pe&&!!_.iridescenceThicknessMap,de=Pt&&!!_.sheenColorMap,Y=Pt&&!!_.sheenRoughnessMap,K=!!_.specularMap,le=!!_.specularColorMap,U=!!_.specularIntensityMap,J=Ce&&!!_.transmissionMap,q=Ce&&!!_.thicknessMap,ce=!!_.gradientMap,se=!!_.alphaMap,oe=_.alphaTest>0,Te=!!_.alphaHash,ze=!!_.extensions;let re=si;_.toneMapped&&(we===null||we.isXRRenderTarget===!0)&&(re=n.toneMapping);const Ae=Ge?W.isCompressedCubeTexture?W.image[0].mipmaps:W.mipmaps:null,Be={shaderID:te,shaderType:_.type,shaderName:_.name,vertexShader:De,fragmentShader:Z,defines:_.defines,customVertexShaderID:fe,customFragmentShaderID:xe,isRawShaderMaterial:_.isRawShaderMaterial===!0,glslVersion:_.glslVersion,precision:$,batching:mt,batchingColor:mt&&P._colorsTexture!==null,instancing:Ie,instancingColor:Ie&&P.instanceColor!==null,instancingMorph:Ie&&P.morphTexture!==null,outputColorSpace:we===null?n.outputColorSpace:we.isXRRenderTarget===!0?we.texture.colorSpace:Xe.workingColorSpace,alphaToCoverage:!!_.alphaToCoverage,map:Re,matcap:$e,envMap:rt,envMapMode:rt&&W.mapping,envMapPMREM:Ge,envMapMaxLod:Ge?Ae.length-1:null,envMapSize:Ge?Ae[0].width:null,aoMap:Ht,lightMap:Ct,bumpMap:sn,normalMap:dt,displacementMap:jn,emissiveMap:It,normalMapObjectSpace:dt&&_.normalMapType===Lm,normalMapTangentSpace:dt&&_.normalMapType===Ff,packedNormalMap:dt&&_.normalMapType===Ff&&px(_.normalMap.format),metalnessMap:yn,roughnessMap:bn,anisotropy:En,anisotropyMap:Ne,clearcoat:B,clearcoatMap:C,clearcoatNormalMap:E,clearcoatRoughnessMap:H,diffuseRoughness:Tn,diffuseRoughnessMap:ne,dispersion:ut,retroreflection:ft,iridescence:pe,iridescenceMap:Q,iridescenceThicknessMap:ae,sheen:Pt,sheenColorMap:de,sheenRoughnessMap:Y,specularMap:K,specularColorMap:le,specularIntensityMap:U,transmission:Ce,transmissionMap:J,thicknessMap:q,gradientMap:ce,opaque:_.transparent===!1&&_.blending===bs&&_.alphaToCoverage===!1,alphaMap:se,alphaTest:oe,alphaHash:Te,combine:_.combine,mapUv:Re&&h(_.map.channel),aoMapUv:Ht&&h(_.aoMap.channel),lightMapUv:Ct&&h(_.lightMap.channel),bumpMapUv:sn&&h(_.bumpMap.channel),normalMapUv:dt&&h(_.normalMap.channel),displacementMapUv:jn&&h(_.displacementMap.channel),emissiveMapUv:It&&h(_.emissiveMap.channel),metalnessMapUv:yn&&h(_.metalnessMap.channel),roughnessMapUv:bn&&h(_.roughnessMap.channel),anisotropyMapUv:Ne&&h(_.anisotropyMap.channel),clearcoatMapUv:C&&h(_.clearcoatMap.channel),clearcoatNormalMapUv:E&&h(_.clearcoatNormalMap.channel),clearcoatRoughnessMapUv:H&&h(_.clearcoatRoughnessMap.channel),diffuseRoughnessMapUv:ne&&h(_.diffuseRoughnessMap.channel),iridescenceMapUv:Q&&h(_.iridescenceMap.channel),iridescenceThicknessMapUv:ae&&h(_.iridescenceThicknessMap.channel),sheenColorMapUv:de&&h(_.sheenColorMap.channel),sheenRoughnessMapUv:Y&&h(_.sheenRoughnessMap.channel),specularMapUv:K&&h(_.specularMap.channel),specularColorMapUv:le&&h(_.specularColorMap.channel),specularIntensityMapUv:U&&h(_.specularIntensityMap.channel),transmissionMapUv:J&&h(_.transmissionMap.channel),thicknessMapUv:q&&h(_.thicknessMap.channel),alphaMapUv:se&&h(_.alphaMap.channel),vertexTangents:!!L.attributes.tangent&&(dt||En),vertexNormals:!!L.attributes.normal,vertexColors:_.vertexColors,vertexAlphas:_.vertexColors===!0&&!!L.attributes.color&&L.attributes.color.itemSize===4,pointsUvs:P.isPoints===!0&&!!L.attributes.uv&&(Re||se),fog:!!O,useFog:_.fog===!0,fogExp2:!!O&&O.isFogExp2,flatShading:_.wireframe===!1&&(_.flatShading===!0||L.attributes.normal===void 0&&dt===!1&&(_.isMeshLambertMaterial||_.isMeshPhongMaterial||_.isMeshStandardMaterial||_.isMeshPhysicalMaterial)),sizeAttenuation:_.sizeAttenuation===!0,logarithmicDepthBuffer:d,reversedDepthBuffer:ge,skinning:P.isSkinnedMesh===!0,hasPositionAttribute:L.attributes.position!==void 0,morphTargets:L.morphAttributes.position!==void 0,morphNormals:L.morphAttributes.normal!==void 0,morphColors:L.morphAttributes.color!==void 0,morphTargetsCount:ee,morphTextureStride:Se,numSunLights:y.sun.length,numDirLights:y.directional.length,numPointLights:y.point.length,numSpotLights:y.spot.length,numSpotLightMaps:y.spotLightMap.length,numRectAreaLights:y.rectArea.length,numHemiLights:y.hemi.length,numSunLightShadows:y.sunShadowMap.length,numDirLightShadows:y.directionalShadowMap.length,numPointLightShadows:y.pointShadowMap.length,numSpotLightShadows:y.spotShadowMap.length,numSpotLightShadowsWithMaps:y.numSpotLightShadowsWithMaps,numLightProbes:y.numLightProbes,numLightProbeGrids:D.filter(_e=>_e.texture!==null).length,numClippingPlanes:s.numPlanes,numClipIntersection:s.numIntersection,dithering:_.dithering,shadowMapEnabled:n.shadowMap.enabled&&I.length>0,shadowMapType:n.shadowMap.type,toneMapping:re,decodeVideoTexture:Re&&_.map.isVideoTexture===!0&&Xe.getTransfer(_.map.colorSpace)===et,decodeVideoTextureEmissive:It&&_.emissiveMap.isVideoTexture===!0&&Xe.getTransfer(_.emissiveMap.colorSpace)===et,premultipliedAlpha:_.premultipliedAlpha,doubleSided:_.side===an,flipSided:_.side===Kt,useDepthPacking:_.depthPacking>=0,depthPacking:_.depthPacking||0,index0AttributeName:_.index0AttributeName,extensionClipCullDistance:ze&&_.extensions.clipCullDistance===!0&&t.has("WEBGL_clip_cull_distance"),extensionMultiDraw:(ze&&_.extensions.multiDraw===!0||mt)&&t.has("WEBGL_multi_draw"),rendererExtensionParallelShaderCompile:t.has("KHR_parallel_shader_compile"),customProgramCacheKey:_.customProgramCacheKey()};return Be.vertexUv1s=l.has(1),Be.vertexUv2s=l.has(2),Be.vertexUv3s=l.has(3),l.clear(),Be}function x(_){const y=[];if(_.shaderID?y.push(_.shaderID):(y.push(_.customVertexShaderID),y.push(_.customFragmentShaderID)),_.defines!==void 0)for(const I in _.defines)y.push(I),y.push(_.defines[I]);return _.isRawShaderMaterial===!1&&(m(y,_),p(y,_),y.push(n.outputColorSpace)),y.push(_.customProgramCacheKey),y.join()}function m(_,y){_.push(y.precision),_.push(y.outputColorSpace),_.push(y.envMapMode),_.push(y.envMapPMREM),_.push(y.envMapMaxLod),_.push(y.envMapSize),_.push(y.mapUv),_.push(y.alphaMapUv),_.push(y.lightMapUv),_.push(y.aoMapUv),_.push(y.bumpMapUv),_.push(y.normalMapUv),_.push(y.displacementMapUv),_.push(y.emissiveMapUv),_.push(y.metalnessMapUv),_.push(y.roughnessMapUv),_.push(y.anisotropyMapUv),_.push(y.clearcoatMapUv),_.push(y.clearcoatNormalMapUv),_.push(y.clearcoatRoughnessMapUv),_.push(y.diffuseRoughnessMapUv),_.push(y.iridescenceMapUv),_.push(y.iridescenceThicknessMapUv),_.push(y.sheenColorMapUv),_.push(y.sheenRoughnessMapUv),_.push(y.specularMapUv),_.push(y.specularColorMapUv),_.push(y.specularIntensityMapUv),_.push(y.transmissionMapUv),_.push(y.thicknessMapUv),_.push(y.combine),_.push(y.fogExp2),_.push(y.sizeAttenuation),_.push(y.morphTargetsCount),_.push(y.numSunLights),_.push(y.numDirLights),_.push(y.numPointLights),_.push(y.numSpotLights),_.push(y.numSpotLightMaps),_.push(y.numHemiLights),_.push(y.numRectAreaLights),_.push(y.numSunLightShadows),_.push(y.numDirLightShadows),_.push(y.numPointLightShadows),_.push(y.numSpotLightShadows),_.push(y.numSpotLightShadowsWithMaps),_.push(y.numLightProbes),_.push(y.numLightProbeGrids),_.push(y.shadowMapType),_.push(y.toneMapping),_.push(y.numClippingPlanes),_.push(y.numClipIntersection),_.push(y.depthPacking)}function p(_,y){a.disableAll(),y.instancing&&a.enable(0),y.instancingColor&&a.enable(1),y.instancingMorph&&a.enable(2),y.matcap&&a.enable(3),y.envMap&&a.enable(4),y.normalMapObjectSpace&&a.enable(5),y.normalMapTangentSpace&&a.enable(6),y.clearcoat&&a.enable(7),y.iridescence&&a.enable(8),y.alphaTest&&a.enable(9),y.vertexColors&&a.enable(10),y.vertexAlphas&&a.enable(11),y.vertexUv1s&&a.enable(12),y.vertexUv2s&&a.enable(13),y.vertexUv3s&&a.enable(14),y.vertexTangents&&a.enable(15),y.anisotropy&&a.enable(16),y.alphaHash&&a.enable(17),y.batching&&a.enable(18),y.dispersion&&a.enable(19),y.retroreflection&&a.enable(24),y.diffuseRoughness&&a.enable(25),y.batchingColor&&a.enable(20),y.gradientMap&&a.enable(21),y.packedNormalMap&&a.enable(22),y.vertexNormals&&a.enable(23),_.push(a.mask),a.disableAll(),y.fog&&a.enable(0),y.useFog&&a.enable(1),y.flatShading&&a.enable(2),y.logarithmicDepthBuffer&&a.enable(3),y.reversedDepthBuffer&&a.enable(4),y.skinning&&a.enable(5),y.morphTargets&&a.enable(6),y.morphNormals&&a.enable(7),y.morphColors&&a.enable(8),y.premultipliedAlpha&&a.enable(9),y.shadowMapEnabled&&a.enable(10),y.doubleSided&&a.enable(11),y.flipSided&&a.enable(12),y.useDepthPacking&&a.enable(13),y.dithering&&a.enable(14),y.transmission&&a.enable(15),y.sheen&&a.enable(16),y.opaque&&a.enable(17),y.pointsUvs&&a.enable(18),y.decodeVideoTexture&&a.enable(19),y.decodeVideoTextureEmissive&&a.enable(20),y.alphaToCoverage&&a.enable(21),y.numLightProbeGrids>0&&a.enable(22),y.hasPositionAttribute&&a.enable(23),_.push(a.mask)}function v(_){const y=u[_.type];let I;if(y){const R=Wn[y];I=xg.clone(R.uniforms)}else I=_.uniforms;return I}function M(_,y){let I=f.get(y);return I!==void 0?++I.usedTimes:(I=new ux(n,y,_,r),c.push(I),f.set(y,I)),I}function S(_){if(--_.usedTimes===0){const y=c.indexOf(_);c[y]=c[c.length-1],c.pop(),f.delete(_.cacheKey),_.destroy()}}function b(_){o.remove(_)}function w(){o.dispose()}return{getParameters:g,getProgramCacheKey:x,getUniforms:v,acquireProgram:M,releaseProgram:S,releaseShaderCache:b,programs:c,dispose:w}}function gx(){let n=new WeakMap;function e(a){return n.has(a)}function t(a){let o=n.get(a);return o===void 0&&(o={},n.set(a,o)),o}function i(a){n.delete(a)}function r(a,o,l){n.get(a)[o]=l}function s(){n=new WeakMap}return{has:e,get:t,remove:i,update:r,dispose:s}}function _x(n,e){return n.groupOrder!==e.groupOrder?n.groupOrder-e.groupOrder:n.renderOrder!==e.renderOrder?n.renderOrder-e.renderOrder:n.material.id!==e.material.id?n.material.id-e.material.id:n.materialVariant!==e.materialVariant?n.materialVariant-e.materialVariant:n.z!==e.z?n.z-e.z:n.id-e.id}function Qd(n,e){return n.groupOrder!==e.groupOrder?n.groupOrder-e.groupOrder:n.renderOrder!==e.renderOrder?n.renderOrder-e.renderOrder:n.z!==e.z?e.z-n.z:n.id-e.id}function jd(){const n=[];let e=0;const t=[],i=[],r=[];function s(){e=0,t.length=0,i.length=0,r.length=0}function a(u){let h=0;return u.isInstancedMesh&&(h+=2),u.isSkinnedMesh&&(h+=1),h}function o(u,h,g,x,m,p){let v=n[e];return v===void 0?(v={id:u.id,object:u,geometry:h,material:g,materialVariant:a(u),groupOrder:x,renderOrder:u.renderOrder,z:m,group:p},n[e]=v):(v.id=u.id,v.object=u,v.geometry=h,v.material=g,v.materialVariant=a(u),v.groupOrder=x,v.renderOrder=u.renderOrder,v.z=m,v.group=p),e++,v}function l(u,h,g,x,m,p,v){v.reversedDepth===!0&&(m=-m);const M=o(u,h,g,x,m,p);g.transmission>0?i.push(M):g.transparent===!0?r.push(M):t.push(M)}function c(u,h,g,x,m,p){const v=o(u,h,g,x,m,p);g.transmission>0?i.unshift(v):g.transparent===!0?r.unshift(v):t.unshift(v)}function f(u,h){t.length>1&&t.sort(u||_x),i.length>1&&i.sort(h||Qd),r.length>1&&r.sort(h||Qd)}function d(){for(let u=e,h=n.length;u<h;u++){const g=n[u];if(g.id===null)break;g.id=null,g.object=null,g.geometry=null,g.material=null,g.group=null}}return{opaque:t,transmissive:i,transparent:r,init:s,push:l,unshift:c,finish:d,sort:f}}function vx(){let n=new WeakMap;function e(i,r){const s=n.get(i);let a;return s===void 0?(a=new jd,n.set(i,[a])):r>=s.length?(a=new jd,s.push(a)):a=s[r],a}function t(){n=new WeakMap}return{get:e,dispose:t}}function xx(){const n={};return{get:function(e){if(n[e.id]!==void 0)return n[e.id];let t;switch(e.type){case"SunLight":case"DirectionalLight":t={direction:new N,color:new Ye};break;case"SpotLight":t={position:new N,direction:new N,color:new Ye,distance:0,coneCos:0,penumbraCos:0,decay:0};break;case"PointLight":t={position:new N,color:new Ye,distance:0,decay:0};break;case"HemisphereLight":t={direction:new N,skyColor:new Ye,groundColor:new Ye};break;case"RectAreaLight":t={color:new Ye,position:new N,halfWidth:new N,halfHeight:new N};break}return n[e.id]=t,t}}}function Sx(){const n={};return{get:function(e){if(n[e.id]!==void 0)return n[e.id];let t;switch(e.type){case"SunLight":case"DirectionalLight":t={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new He};break;case"SpotLight":t={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new He};break;case"PointLight":t={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new He,shadowCameraNear:1,shadowCameraFar:1e3};break}return n[e.id]=t,t}}}let Mx=0;function yx(n,e){return(e.castShadow?2:0)-(n.castShadow?2:0)+(e.map?1:0)-(n.map?1:0)}function bx(n){const e=new xx,t=Sx(),i={version:0,hash:{sunLength:-1,directionalLength:-1,pointLength:-1,spotLength:-1,rectAreaLength:-1,hemiLength:-1,numSunShadows:-1,numDirectionalShadows:-1,numPointShadows:-1,numSpotShadows:-1,numSpotMaps:-1,numLightProbes:-1},ambient:[0,0,0],probe:[],sun:[],sunShadow:[],sunShadowMap:[],sunShadowMatrix:[],sunShadowCascade:[],directional:[],directionalShadow:[],directionalShadowMap:[],directionalShadowMatrix:[],spot:[],spotLightMap:[],spotShadow:[],spotShadowMap:[],spotLightMatrix:[],rectArea:[],rectAreaLTC1:null,rectAreaLTC2:null,point:[],pointShadow:[],pointShadowMap:[],pointShadowMatrix:[],hemi:[],numSpotLightShadowsWithMaps:0,numLightProbes:0};for(let c=0;c<9;c++)i.probe.push(new N);const r=new N,s=new je,a=new je;function o(c){let f=0,d=0,u=0;for(let D=0;D<9;D++)i.probe[D].set(0,0,0);let h=0,g=0,x=0,m=0,p=0,v=0,M=0,S=0,b=0,w=0,_=0,y=0,I=0,R=0;c.sort(yx);for(let D=0,O=c.length;D<O;D++){const L=c[D],k=L.color,V=L.intensity,W=L.distance;let te=null;if(L.shadow&&L.shadow.map&&(L.shadow.map.texture.format===Zi?te=L.shadow.map.texture:te=L.shadow.map.depthTexture||L.shadow.map.texture),L.isAmbientLight)f+=k.r*V,d+=k.g*V,u+=k.b*V;else if(L.isLightProbe){for(let $=0;$<9;$++)i.probe[$].addScaledVector(L.sh.coefficients[$],V);R++}else if(L.isSunLight){const $=e.get(L);if($.color.copy(L.color).multiplyScalar(L.intensity),L.castShadow){const j=L.shadow,ee=t.get(L);ee.shadowIntensity=j.intensity,ee.shadowBias=j.bias,ee.shadowNormalBias=j.normalBias,ee.shadowRadius=j.radius,ee.shadowMapSize.copy(j.mapSize).multiply(j.getFrameExtents()),i.sunShadow[g]=ee,i.sunShadowMap[g]=te;const Se=j.getViewportCount();for(let De=0;De<Se;De++)i.sunShadowMatrix[x+De]=j.getMatrix(De),i.sunShadowCascade[x+De]=j._cascadeData[De];x+=Se,g++}i.sun[h]=$,h++}else if(L.isDirectionalLight){const $=e.get(L);if($.color.copy(L.color).multiplyScalar(L.intensity),L.castShadow){const j=L.shadow,ee=t.get(L);ee.shadowIntensity=j.intensity,ee.shadowBias=j.bias,ee.shadowNormalBias=j.normalBias,ee.shadowRadius=j.radius,ee.shadowMapSize=j.mapSize,i.directionalShadow[m]=ee,i.directionalShadowMap[m]=te,i.directionalShadowMatrix[m]=L.shadow.matrix,b++}i.directional[m]=$,m++}else if(L.isSpotLight){const $=e.get(L);$.position.setFromMatrixPosition(L.matrixWorld),$.color.copy(k).multiplyScalar(V),$.distance=W,$.coneCos=Math.cos(L.angle),$.penumbraCos=Math.cos(L.angle*(1-L.penumbra)),$.decay=L.decay,i.spot[v]=$;const j=L.shadow;if(L.map&&(i.spotLightMap[y]=L.map,y++,j.updateMatrices(L),L.castShadow&&I++),i.spotLightMatrix[v]=j.matrix,L.castShadow){const ee=t.get(L);ee.shadowIntensity=j.intensity,ee.shadowBias=j.bias,ee.shadowNormalBias=j.normalBias,ee.shadowRadius=j.radius,ee.shadowMapSize=j.mapSize,i.spotShadow[v]=ee,i.spotShadowMap[v]=te,_++}v++}else if(L.isRectAreaLight){const $=e.get(L);$.color.copy(k).multiplyScalar(V),$.halfWidth.set(L.width*.5,0,0),$.halfHeight.set(0,L.height*.5,0),i.rectArea[M]=$,M++}else if(L.isPointLight){const $=e.get(L);if($.color.copy(L.color).multiplyScalar(L.intensity),$.distance=L.distance,$.decay=L.decay,L.castShadow){const j=L.shadow,ee=t.get(L);ee.shadowIntensity=j.intensity,ee.shadowBias=j.bias,ee.shadowNormalBias=j.normalBias,ee.shadowRadius=j.radius,ee.shadowMapSize=j.mapSize,ee.shadowCameraNear=j.camera.near,ee.shadowCameraFar=j.camera.far,i.pointShadow[p]=ee,i.pointShadowMap[p]=te,i.pointShadowMatrix[p]=L.shadow.matrix,w++}i.point[p]=$,p++}else if(L.isHemisphereLight){const $=e.get(L);$.skyColor.copy(L.color).multiplyScalar(V),$.groundColor.copy(L.groundColor).multiplyScalar(V),i.hemi[S]=$,S++}}M>0&&(n.has("OES_texture_float_linear")===!0?(i.rectAreaLTC1=me.LTC_FLOAT_1,i.rectAreaLTC2=me.LTC_FLOAT_2):(i.rectAreaLTC1=me.LTC_HALF_1,i.rectAreaLTC2=me.LTC_HALF_2)),i.ambient[0]=f,i.ambient[1]=d,i.ambient[2]=u;const P=i.hash;(P.sunLength!==h||P.directionalLength!==m||P.pointLength!==p||P.spotLength!==v||P.rectAreaLength!==M||P.hemiLength!==S||P.numSunShadows!==g||P.numDirectionalShadows!==b||P.numPointShadows!==w||P.numSpotShadows!==_||P.numSpotMaps!==y||P.numLightProbes!==R)&&(i.sun.length=h,i.directional.length=m,i.spot.length=v,i.rectArea.length=M,i.point.length=p,i.hemi.length=S,i.sunShadow.length=g,i.sunShadowMap.length=g,i.sunShadowMatrix.length=x,i.sunShadowCascade.length=x,i.directionalShadow.length=b,i.directionalShadowMap.length=b,i.directionalShadowMatrix.length=b,i.pointShadow.length=w,i.pointShadowMap.length=w,i.pointShadowMatrix.length=w,i.spotShadow.length=_,i.spotShadowMap.length=_,i.spotLightMatrix.length=_+y-I,i.spotLightMap.length=y,i.numSpotLightShadowsWithMaps=I,i.numLightProbes=R,P.sunLength=h,P.directionalLength=m,P.pointLength=p,P.spotLength=v,P.rectAreaLength=M,P.hemiLength=S,P.numSunShadows=g,P.numDirectionalShadows=b,P.numPointShadows=w,P.numSpotShadows=_,P.numSpotMaps=y,P.numLightProbes=R,i.version=Mx++)}function l(c,f){let d=0,u=0,h=0,g=0,x=0,m=0;const p=f.matrixWorldInverse;for(let v=0,M=c.length;v<M;v++){const S=c[v];if(S.isSunLight){const b=i.sun[d];b.direction.setFromMatrixPosition(S.matrixWorld),b.direction.transformDirection(p),d++}else if(S.isDirectionalLight){const b=i.directional[u];b.direction.setFromMatrixPosition(S.matrixWorld),r.setFromMatrixPosition(S.target.matrixWorld),b.direction.sub(r),b.direction.transformDirection(p),u++}else if(S.isSpotLight){const b=i.spot[g];b.position.setFromMatrixPosition(S.matrixWorld),b.position.applyMatrix4(p),b.direction.setFromMatrixPosition(S.matrixWorld),r.setFromMatrixPosition(S.target.matrixWorld),b.direction.sub(r),b.direction.transformDirection(p),g++}else if(S.isRectAreaLight){const b=i.rectArea[x];b.position.setFromMatrixPosition(S.matrixWorld),b.position.applyMatrix4(p),a.identity(),s.copy(S.matrixWorld),s.premultiply(p),a.extractRotation(s),b.halfWidth.set(S.width*.5,0,0),b.halfHeight.set(0,S.height*.5,0),b.halfWidth.applyMatrix4(a),b.halfHeight.applyMatrix4(a),x++}else if(S.isPointLight){const b=i.point[h];b.position.setFromMatrixPosition(S.matrixWorld),b.position.applyMatrix4(p),h++}else if(S.isHemisphereLight){const b=i.hemi[m];b.direction.setFromMatrixPosition(S.matrixWorld),b.direction.transformDirection(p),m++}}}return{setup:o,setupView:l,state:i}}function eh(n){const e=new bx(n),t=[],i=[],r=[];function s(d){f.camera=d,t.length=0,i.length=0,r.length=0}function a(d){d.isLightProbeGrid?r.push(d):t.push(d)}function o(d){i.push(d)}function l(){e.setup(t),r.sort((d,u)=>d.priority-u.priority||d.id-u.id)}function c(d){e.setupView(t,d)}const f={lightsArray:t,shadowsArray:i,lightProbeGridArray:r,camera:null,lights:e,transmissionRenderTarget:{},textureUnits:0};return{init:s,state:f,setupLights:l,setupLightsView:c,pushLight:a,pushShadow:o}}function Ex(n){let e=new WeakMap;function t(r,s=0){const a=e.get(r);let o;return a===void 0?(o=new eh(n),e.set(r,[o])):s>=a.length?(o=new eh(n),a.push(o)):o=a[s],o}function i(){e=new WeakMap}return{get:t,dispose:i}}const Tx=`void main() {
+	gl_Position = vec4( position, 1.0 );
+}`,Ax=`uniform sampler2D shadow_pass;
+uniform vec2 resolution;
+uniform float radius;
+void main() {
+	const float samples = float( VSM_SAMPLES );
+	float mean = 0.0;
+	float squared_mean = 0.0;
+	float uvStride = samples <= 1.0 ? 0.0 : 2.0 / ( samples - 1.0 );
+	float uvStart = samples <= 1.0 ? 0.0 : - 1.0;
+	for ( float i = 0.0; i < samples; i ++ ) {
+		float uvOffset = uvStart + i * uvStride;
+		#ifdef HORIZONTAL_PASS
+			vec2 distribution = texture2D( shadow_pass, ( gl_FragCoord.xy + vec2( uvOffset, 0.0 ) * radius ) / resolution ).rg;
+			mean += distribution.x;
+			squared_mean += distribution.y * distribution.y + distribution.x * distribution.x;
+		#else
+			float depth = texture2D( shadow_pass, ( gl_FragCoord.xy + vec2( 0.0, uvOffset ) * radius ) / resolution ).r;
+			mean += depth;
+			squared_mean += depth * depth;
+		#endif
+	}
+	mean = mean / samples;
+	squared_mean = squared_mean / samples;
+	float std_dev = sqrt( max( 0.0, squared_mean - mean * mean ) );
+	gl_FragColor = vec4( mean, std_dev, 0.0, 1.0 );
+}`,wx=[new N(1,0,0),new N(-1,0,0),new N(0,1,0),new N(0,-1,0),new N(0,0,1),new N(0,0,-1)],Rx=[new N(0,-1,0),new N(0,-1,0),new N(0,0,1),new N(0,0,-1),new N(0,-1,0),new N(0,-1,0)],th=new je,Os=new N,Nc=new N;function Cx(n,e,t){let i=new Xa;const r=new He,s=new He,a=new at,o=new bg,l=new Eg,c={},f=t.maxTextureSize,d={[ri]:Kt,[Kt]:ri,[an]:an},u=new Li({defines:{VSM_SAMPLES:8},uniforms:{shadow_pass:{value:null},resolution:{value:new He},radius:{value:4}},vertexShader:Tx,fragmentShader:Ax}),h=u.clone();h.defines.HORIZONTAL_PASS=1;const g=new Hn;g.setAttribute("position",new kt(new Float32Array([-1,-1,.5,3,-1,.5,-1,3,.5]),3));const x=new hi(g,u),m=this;this.enabled=!1,this.autoUpdate=!0,this.needsUpdate=!1,this.type=da;let p=this.type;this.render=function(w,_,y){if(m.enabled===!1||m.autoUpdate===!1&&m.needsUpdate===!1||w.length===0)return;this.type===lm&&(Pe("WebGLShadowMap: PCFSoftShadowMap has been removed. Using PCFShadowMap instead."),this.type=da);const I=n.getRenderTarget(),R=n.getActiveCubeFace(),P=n.getActiveMipmapLevel(),D=n.state;D.setBlending(Mr),D.buffers.depth.getReversed()===!0?D.buffers.color.setClear(0,0,0,0):D.buffers.color.setClear(1,1,1,1),D.buffers.depth.setTest(!0),D.setScissorTest(!1);const O=p!==this.type;O&&_.traverse(function(L){L.material&&(Array.isArray(L.material)?L.material.forEach(k=>k.needsUpdate=!0):L.material.needsUpdate=!0)});for(let L=0,k=w.length;L<k;L++){const V=w[L],W=V.shadow;if(W===void 0){Pe("WebGLShadowMap:",V,"has no shadow.");continue}if(W.autoUpdate===!1&&W.needsUpdate===!1)continue;r.copy(W.mapSize);const te=W.getFrameExtents();r.multiply(te),s.copy(W.mapSize),(r.x>f||r.y>f)&&(r.x>f&&(s.x=Math.floor(f/te.x),r.x=s.x*te.x,W.mapSize.x=s.x),r.y>f&&(s.y=Math.floor(f/te.y),r.y=s.y*te.y,W.mapSize.y=s.y));const $=n.state.buffers.depth.getReversed();if(W.camera._reversedDepth=$,W.map===null||O===!0){if(W.map!==null&&(W.map.depthTexture!==null&&(W.map.depthTexture.dispose(),W.map.depthTexture=null),W.map.dispose()),this.type===ys){if(V.isPointLight){Pe("WebGLShadowMap: VSM shadow maps are not supported for PointLights. Use PCF or BasicShadowMap instead.");continue}W.map=new Rn(r.x,r.y,{format:Zi,type:kn,minFilter:tn,magFilter:tn,generateMipmaps:!1}),W.map.texture.name=V.name+".shadowMap",W.map.depthTexture=new Fr(r.x,r.y,Bn),W.map.depthTexture.name=V.name+".shadowMapDepth",W.map.depthTexture.format=bi,W.map.depthTexture.compareFunction=null,W.map.depthTexture.minFilter=Ot,W.map.depthTexture.magFilter=Ot}else V.isPointLight?(W.map=new Lc(r.x),W.map.depthTexture=new gd(r.x,On)):(W.map=new Rn(r.x,r.y),W.map.depthTexture=new Fr(r.x,r.y,On)),W.map.depthTexture.name=V.name+".shadowMap",W.map.depthTexture.format=bi,this.type===da?(W.map.depthTexture.compareFunction=$?Bf:Of,W.map.depthTexture.minFilter=tn,W.map.depthTexture.magFilter=tn):(W.map.depthTexture.compareFunction=null,W.map.depthTexture.minFilter=Ot,W.map.depthTexture.magFilter=Ot);W.camera.updateProjectionMatrix()}W.map.isWebGLCubeRenderTarget!==!0&&(W.map.width!==r.x||W.map.height!==r.y)&&W.map.setSize(r.x,r.y);const j=W.map.isWebGLCubeRenderTarget?6:W.getViewportCount();V.isPointLight!==!0&&W.updateMatrices(V,y);const ee=(W.camera.layers.mask&4294967294)!==0?W.camera.layers:y.layers;for(let Se=0;Se<j;Se++){const De=W.getCamera(Se);if(V.isPointLight){const Z=W.camera,fe=W.matrix,xe=V.distance||Z.far;xe!==Z.far&&(Z.far=xe,Z.updateProjectionMatrix()),Os.setFromMatrixPosition(V.matrixWorld),Z.position.copy(Os),Nc.copy(Z.position),Nc.add(wx[Se]),Z.up.copy(Rx[Se]),Z.lookAt(Nc),Z.updateMatrixWorld(),fe.makeTranslation(-Os.x,-Os.y,-Os.z),th.multiplyMatrices(Z.projectionMatrix,Z.matrixWorldInverse),W._frustum.setFromProjectionMatrix(th,Z.coordinateSystem,Z.reversedDepth)}if(W.map.isWebGLCubeRenderTarget)n.setRenderTarget(W.map,Se),n.clear();else{Se===0&&(n.setRenderTarget(W.map),n.clear());const Z=W.getViewport(Se);a.set(s.x*Z.x,s.y*Z.y,s.x*Z.z,s.y*Z.w),D.viewport(a)}i=W.getFrustum(Se),S(_,y,De,V,ee,this.type)}W.isPointLightShadow!==!0&&this.type===ys&&v(W,y),W.needsUpdate=!1}p=this.type,m.needsUpdate=!1,n.setRenderTarget(I,R,P)};function v(w,_){const y=e.update(x);u.defines.VSM_SAMPLES!==w.blurSamples&&(u.defines.VSM_SAMPLES=w.blurSamples,h.defines.VSM_SAMPLES=w.blurSamples,u.needsUpdate=!0,h.needsUpdate=!0),w.mapPass===null?w.mapPass=new Rn(r.x,r.y,{format:Zi,type:kn}):(w.mapPass.width!==w.map.width||w.mapPass.height!==w.map.height)&&w.mapPass.setSize(w.map.width,w.map.height),u.uniforms.shadow_pass.value=w.map.depthTexture,u.uniforms.resolution.value.set(w.map.width,w.map.height),u.uniforms.radius.value=w.radius,n.setRenderTarget(w.mapPass),n.clear(),n.renderBufferDirect(_,null,y,u,x,null),h.uniforms.shadow_pass.value=w.mapPass.texture,h.uniforms.resolution.value.set(w.map.width,w.map.height),h.uniforms.radius.value=w.radius,n.setRenderTarget(w.map),n.clear(),n.renderBufferDirect(_,null,y,h,x,null)}function M(w,_,y,I){let R=null;const P=y.isPointLight===!0?w.customDistanceMaterial:w.customDepthMaterial;if(P!==void 0)R=P;else if(R=y.isPointLight===!0?l:o,n.localClippingEnabled&&_.clipShadows===!0&&Array.isArray(_.clippingPlanes)&&_.clippingPlanes.length!==0||_.displacementMap&&_.displacementScale!==0||_.alphaMap&&_.alphaTest>0||_.map&&_.alphaTest>0||_.alphaToCoverage===!0){const D=R.uuid,O=_.uuid;let L=c[D];L===void 0&&(L={},c[D]=L);let k=L[O];k===void 0&&(k=R.clone(),L[O]=k,_.addEventListener("dispose",b)),R=k}if(R.visible=_.visible,R.wireframe=_.wireframe,I===ys?R.side=_.shadowSide!==null?_.shadowSide:_.side:R.side=_.shadowSide!==null?_.shadowSide:d[_.side],R.alphaMap=_.alphaMap,R.alphaTest=_.alphaToCoverage===!0?.5:_.alphaTest,R.map=_.map,R.clipShadows=_.clipShadows,R.clippingPlanes=_.clippingPlanes,R.clipIntersection=_.clipIntersection,R.displacementMap=_.displacementMap,R.displacementScale=_.displacementScale,R.displacementBias=_.displacementBias,R.wireframeLinewidth=_.wireframeLinewidth,R.linewidth=_.linewidth,y.isPointLight===!0&&R.isMeshDistanceMaterial===!0){const D=n.properties.get(R);D.light=y}return R}function S(w,_,y,I,R,P){if(w.visible===!1)return;if(w.layers.test(R)&&(w.isMesh||w.isLine||w.isPoints)&&(w.castShadow||w.receiveShadow&&P===ys)&&(!w.frustumCulled||w.intersectsFrustum(i))){w.modelViewMatrix.multiplyMatrices(y.matrixWorldInverse,w.matrixWorld);const L=e.update(w),k=w.material;if(Array.isArray(k)){const V=L.groups;for(let W=0,te=V.length;W<te;W++){const $=V[W],j=k[$.materialIndex];if(j&&j.visible){const ee=M(w,j,I,P);w.onBeforeShadow(n,w,_,y,L,ee,$),n.renderBufferDirect(y,null,L,ee,w,$),w.onAfterShadow(n,w,_,y,L,ee,$)}}}else if(k.visible){const V=M(w,k,I,P);w.onBeforeShadow(n,w,_,y,L,V,null),n.renderBufferDirect(y,null,L,V,w,null),w.onAfterShadow(n,w,_,y,L,V,null)}}const O=w.children;for(let L=0,k=O.length;L<k;L++)S(O[L],_,y,I,R,P)}function b(w){w.target.removeEventListener("dispose",b);for(const y in c){const I=c[y],R=w.target.uuid;R in I&&(I[R].dispose(),delete I[R])}}}function Px(n,e){function t(){let U=!1;const J=new at;let q=null;const ce=new at(0,0,0,0);return{setMask:function(se){q!==se&&!U&&(n.colorMask(se,se,se,se),q=se)},setLocked:function(se){U=se},setClear:function(se,oe,Te,ze,re){re===!0&&(se*=ze,oe*=ze,Te*=ze),J.set(se,oe,Te,ze),ce.equals(J)===!1&&(n.clearColor(se,oe,Te,ze),ce.copy(J))},reset:function(){U=!1,q=null,ce.set(-1,0,0,0)}}}function i(){let U=!1,J=!1,q=null,ce=null,se=null;return{setReversed:function(oe){if(J!==oe){const Te=e.get("EXT_clip_control");oe?Te.clipControlEXT(Te.LOWER_LEFT_EXT,Te.ZERO_TO_ONE_EXT):Te.clipControlEXT(Te.LOWER_LEFT_EXT,Te.NEGATIVE_ONE_TO_ONE_EXT),J=oe;const ze=se;se=null,this.setClear(ze)}},getReversed:function(){return J},setTest:function(oe){oe?ge(n.DEPTH_TEST):Ie(n.DEPTH_TEST)},setMask:function(oe){q!==oe&&!U&&(n.depthMask(oe),q=oe)},setFunc:function(oe){if(J&&(oe=Gm[oe]),ce!==oe){switch(oe){case al:n.depthFunc(n.NEVER);break;case ol:n.depthFunc(n.ALWAYS);break;case ll:n.depthFunc(n.LESS);break;case Es:n.depthFunc(n.LEQUAL);break;case cl:n.depthFunc(n.EQUAL);break;case ul:n.depthFunc(n.GEQUAL);break;case fl:n.depthFunc(n.GREATER);break;case dl:n.depthFunc(n.NOTEQUAL);break;default:n.depthFunc(n.LEQUAL)}ce=oe}},setLocked:function(oe){U=oe},setClear:function(oe){se!==oe&&(se=oe,J&&(oe=1-oe),n.clearDepth(oe))},reset:function(){U=!1,q=null,ce=null,se=null,J=!1}}}function r(){let U=!1,J=null,q=null,ce=null,se=null,oe=null,Te=null,ze=null,re=null;return{setTest:function(Ae){U||(Ae?ge(n.STENCIL_TEST):Ie(n.STENCIL_TEST))},setMask:function(Ae){J!==Ae&&!U&&(n.stencilMask(Ae),J=Ae)},setFunc:function(Ae,Be,_e){(q!==Ae||ce!==Be||se!==_e)&&(n.stencilFunc(Ae,Be,_e),q=Ae,ce=Be,se=_e)},setOp:function(Ae,Be,_e){(oe!==Ae||Te!==Be||ze!==_e)&&(n.stencilOp(Ae,Be,_e),oe=Ae,Te=Be,ze=_e)},setLocked:function(Ae){U=Ae},setClear:function(Ae){re!==Ae&&(n.clearStencil(Ae),re=Ae)},reset:function(){U=!1,J=null,q=null,ce=null,se=null,oe=null,Te=null,ze=null,re=null}}}const s=new t,a=new i,o=new r;let l={};const c=new WeakMap;let f={},d={},u={},h=new WeakMap,g=[],x=null,m=!1,p=null,v=null,M=null,S=null,b=null,w=null,_=null,y=new Ye(0,0,0),I=0,R=!1,P=null,D=null,O=null,L=null,k=null;const V=n.getParameter(n.MAX_COMBINED_TEXTURE_IMAGE_UNITS);let W=!1,te=0;const $=n.getParameter(n.VERSION);$.indexOf("WebGL")!==-1?(te=parseFloat(/^WebGL (\d)/.exec($)[1]),W=te>=1):$.indexOf("OpenGL ES")!==-1&&(te=parseFloat(/^OpenGL ES (\d)/.exec($)[1]),W=te>=2);let j=null,ee={};const Se=n.getParameter(n.SCISSOR_BOX),De=n.getParameter(n.VIEWPORT),Z=new at().fromArray(Se),fe=new at().fromArray(De);function xe(U,J,q,ce){const se=new Uint8Array(4),oe=n.createTexture();n.bindTexture(U,oe),n.texParameteri(U,n.TEXTURE_MIN_FILTER,n.NEAREST),n.texParameteri(U,n.TEXTURE_MAG_FILTER,n.NEAREST);for(let Te=0;Te<q;Te++)U===n.TEXTURE_3D||U===n.TEXTURE_2D_ARRAY?n.texImage3D(J,0,n.RGBA,1,1,ce,0,n.RGBA,n.UNSIGNED_BYTE,se):n.texImage2D(J+Te,0,n.RGBA,1,1,0,n.RGBA,n.UNSIGNED_BYTE,se);return oe}const we={};we[n.TEXTURE_2D]=xe(n.TEXTURE_2D,n.TEXTURE_2D,1),we[n.TEXTURE_CUBE_MAP]=xe(n.TEXTURE_CUBE_MAP,n.TEXTURE_CUBE_MAP_POSITIVE_X,6),we[n.TEXTURE_2D_ARRAY]=xe(n.TEXTURE_2D_ARRAY,n.TEXTURE_2D_ARRAY,1,1),we[n.TEXTURE_3D]=xe(n.TEXTURE_3D,n.TEXTURE_3D,1,1),s.setClear(0,0,0,1),a.setClear(1),o.setClear(0),ge(n.DEPTH_TEST),a.setFunc(Es),sn(!1),dt(pf),ge(n.CULL_FACE),Ht(Mr);function ge(U){f[U]!==!0&&(n.enable(U),f[U]=!0)}function Ie(U){f[U]!==!1&&(n.disable(U),f[U]=!1)}function mt(U,J){return u[U]!==J?(n.bindFramebuffer(U,J),u[U]=J,U===n.DRAW_FRAMEBUFFER&&(u[n.FRAMEBUFFER]=J),U===n.FRAMEBUFFER&&(u[n.DRAW_FRAMEBUFFER]=J),!0):!1}function Re(U,J){let q=g,ce=!1;if(U){q=h.get(J),q===void 0&&(q=[],h.set(J,q));const se=U.textures;if(q.length!==se.length||q[0]!==n.COLOR_ATTACHMENT0){for(let oe=0,Te=se.length;oe<Te;oe++)q[oe]=n.COLOR_ATTACHMENT0+oe;q.length=se.length,ce=!0}}else q[0]!==n.BACK&&(q[0]=n.BACK,ce=!0);ce&&n.drawBuffers(q)}function $e(U){return x!==U?(n.useProgram(U),x=U,!0):!1}const rt={[yr]:n.FUNC_ADD,[um]:n.FUNC_SUBTRACT,[fm]:n.FUNC_REVERSE_SUBTRACT};rt[dm]=n.MIN,rt[hm]=n.MAX;const Ge={[pm]:n.ZERO,[mm]:n.ONE,[gm]:n.SRC_COLOR,[vf]:n.SRC_ALPHA,[ym]:n.SRC_ALPHA_SATURATE,[Sm]:n.DST_COLOR,[vm]:n.DST_ALPHA,[_m]:n.ONE_MINUS_SRC_COLOR,[xf]:n.ONE_MINUS_SRC_ALPHA,[Mm]:n.ONE_MINUS_DST_COLOR,[xm]:n.ONE_MINUS_DST_ALPHA,[bm]:n.CONSTANT_COLOR,[Em]:n.ONE_MINUS_CONSTANT_COLOR,[Tm]:n.CONSTANT_ALPHA,[Am]:n.ONE_MINUS_CONSTANT_ALPHA};function Ht(U,J,q,ce,se,oe,Te,ze,re,Ae){if(U===Mr){m===!0&&(Ie(n.BLEND),m=!1);return}if(m===!1&&(ge(n.BLEND),m=!0),U!==cm){if(U!==p||Ae!==R){if((v!==yr||b!==yr)&&(n.blendEquation(n.FUNC_ADD),v=yr,b=yr),Ae)switch(U){case bs:n.blendFuncSeparate(n.ONE,n.ONE_MINUS_SRC_ALPHA,n.ONE,n.ONE_MINUS_SRC_ALPHA);break;case mf:n.blendFunc(n.ONE,n.ONE);break;case gf:n.blendFuncSeparate(n.ZERO,n.ONE_MINUS_SRC_COLOR,n.ZERO,n.ONE);break;case _f:n.blendFuncSeparate(n.DST_COLOR,n.ONE_MINUS_SRC_ALPHA,n.ZERO,n.ONE);break;default:Ke("WebGLState: Invalid blending: ",U);break}else switch(U){case bs:n.blendFuncSeparate(n.SRC_ALPHA,n.ONE_MINUS_SRC_ALPHA,n.ONE,n.ONE_MINUS_SRC_ALPHA);break;case mf:n.blendFuncSeparate(n.SRC_ALPHA,n.ONE,n.ONE,n.ONE);break;case gf:Ke("WebGLState: SubtractiveBlending requires material.premultipliedAlpha = true");break;case _f:Ke("WebGLState: MultiplyBlending requires material.premultipliedAlpha = true");break;default:Ke("WebGLState: Invalid blending: ",U);break}M=null,S=null,w=null,_=null,y.set(0,0,0),I=0,p=U,R=Ae}return}se=se||J,oe=oe||q,Te=Te||ce,(J!==v||se!==b)&&(n.blendEquationSeparate(rt[J],rt[se]),v=J,b=se),(q!==M||ce!==S||oe!==w||Te!==_)&&(n.blendFuncSeparate(Ge[q],Ge[ce],Ge[oe],Ge[Te]),M=q,S=ce,w=oe,_=Te),(ze.equals(y)===!1||re!==I)&&(n.blendColor(ze.r,ze.g,ze.b,re),y.copy(ze),I=re),p=U,R=!1}function Ct(U,J){U.side===an?Ie(n.CULL_FACE):ge(n.CULL_FACE);let q=U.side===Kt;J&&(q=!q),sn(q),U.blending===bs&&U.transparent===!1?Ht(Mr):Ht(U.blending,U.blendEquation,U.blendSrc,U.blendDst,U.blendEquationAlpha,U.blendSrcAlpha,U.blendDstAlpha,U.blendColor,U.blendAlpha,U.premultipliedAlpha),a.setFunc(U.depthFunc),a.setTest(U.depthTest),a.setMask(U.depthWrite),s.setMask(U.colorWrite);const ce=U.stencilWrite;o.setTest(ce),ce&&(o.setMask(U.stencilWriteMask),o.setFunc(U.stencilFunc,U.stencilRef,U.stencilFuncMask),o.setOp(U.stencilFail,U.stencilZFail,U.stencilZPass)),It(U.polygonOffset,U.polygonOffsetFactor,U.polygonOffsetUnits),U.alphaToCoverage===!0?ge(n.SAMPLE_ALPHA_TO_COVERAGE):Ie(n.SAMPLE_ALPHA_TO_COVERAGE)}function sn(U){P!==U&&(U?n.frontFace(n.CW):n.frontFace(n.CCW),P=U)}function dt(U){U!==am?(ge(n.CULL_FACE),U!==D&&(U===pf?n.cullFace(n.BACK):U===om?n.cullFace(n.FRONT):n.cullFace(n.FRONT_AND_BACK))):Ie(n.CULL_FACE),D=U}function jn(U){U!==O&&(W&&n.lineWidth(U),O=U)}function It(U,J,q){U?(ge(n.POLYGON_OFFSET_FILL),(L!==J||k!==q)&&(L=J,k=q,a.getReversed()&&(J=-J,q=-q),n.polygonOffset(J,q))):Ie(n.POLYGON_OFFSET_FILL)}function yn(U){U?ge(n.SCISSOR_TEST):Ie(n.SCISSOR_TEST)}function bn(U){U===void 0&&(U=n.TEXTURE0+V-1),j!==U&&(n.activeTexture(U),j=U)}function En(U,J,q){q===void 0&&(j===null?q=n.TEXTURE0+V-1:q=j);let ce=ee[q];ce===void 0&&(ce={type:void 0,texture:void 0},ee[q]=ce),(ce.type!==U||ce.texture!==J)&&(j!==q&&(n.activeTexture(q),j=q),n.bindTexture(U,J||we[U]),ce.type=U,ce.texture=J)}function B(){const U=ee[j];U!==void 0&&U.type!==void 0&&(n.bindTexture(U.type,null),U.type=void 0,U.texture=void 0)}function Tn(){try{n.compressedTexImage2D(...arguments)}catch(U){Ke("WebGLState:",U)}}function ut(){try{n.compressedTexImage3D(...arguments)}catch(U){Ke("WebGLState:",U)}}function ft(){try{n.texSubImage2D(...arguments)}catch(U){Ke("WebGLState:",U)}}function pe(){try{n.texSubImage3D(...arguments)}catch(U){Ke("WebGLState:",U)}}function Pt(){try{n.compressedTexSubImage2D(...arguments)}catch(U){Ke("WebGLState:",U)}}function Ce(){try{n.compressedTexSubImage3D(...arguments)}catch(U){Ke("WebGLState:",U)}}function Ne(){try{n.texStorage2D(...arguments)}catch(U){Ke("WebGLState:",U)}}function C(){try{n.texStorage3D(...arguments)}catch(U){Ke("WebGLState:",U)}}function E(){try{n.texImage2D(...arguments)}catch(U){Ke("WebGLState:",U)}}function H(){try{n.texImage3D(...arguments)}catch(U){Ke("WebGLState:",U)}}function ne(U){return d[U]!==void 0?d[U]:n.getParameter(U)}function Q(U,J){d[U]!==J&&(n.pixelStorei(U,J),d[U]=J)}function ae(U){Z.equals(U)===!1&&(n.scissor(U.x,U.y,U.z,U.w),Z.copy(U))}function de(U){fe.equals(U)===!1&&(n.viewport(U.x,U.y,U.z,U.w),fe.copy(U))}function Y(U,J){let q=c.get(J);q===void 0&&(q=new WeakMap,c.set(J,q));let ce=q.get(U);ce===void 0&&(ce=n.getUniformBlockIndex(J,U.name),n.uniformBlockBinding(J,ce,ce),q.set(U,ce))}function K(U,J,q){const se=c.get(J).get(U);l[se]!==q&&(n.bindBufferBase(n.UNIFORM_BUFFER,se,q),l[se]=q)}function le(){n.disable(n.BLEND),n.disable(n.CULL_FACE),n.disable(n.DEPTH_TEST),n.disable(n.POLYGON_OFFSET_FILL),n.disable(n.SCISSOR_TEST),n.disable(n.STENCIL_TEST),n.disable(n.SAMPLE_ALPHA_TO_COVERAGE),n.blendEquation(n.FUNC_ADD),n.blendFunc(n.ONE,n.ZERO),n.blendFuncSeparate(n.ONE,n.ZERO,n.ONE,n.ZERO),n.blendColor(0,0,0,0),n.colorMask(!0,!0,!0,!0),n.clearColor(0,0,0,0),n.depthMask(!0),n.depthFunc(n.LESS),a.setReversed(!1),n.clearDepth(1),n.stencilMask(4294967295),n.stencilFunc(n.ALWAYS,0,4294967295),n.stencilOp(n.KEEP,n.KEEP,n.KEEP),n.clearStencil(0),n.cullFace(n.BACK),n.frontFace(n.CCW),n.polygonOffset(0,0),n.activeTexture(n.TEXTURE0),n.bindFramebuffer(n.FRAMEBUFFER,null),n.bindFramebuffer(n.DRAW_FRAMEBUFFER,null),n.bindFramebuffer(n.READ_FRAMEBUFFER,null),n.useProgram(null),n.lineWidth(1),n.scissor(0,0,n.canvas.width,n.canvas.height),n.viewport(0,0,n.canvas.width,n.canvas.height),n.pixelStorei(n.PACK_ALIGNMENT,4),n.pixelStorei(n.UNPACK_ALIGNMENT,4),n.pixelStorei(n.UNPACK_FLIP_Y_WEBGL,!1),n.pixelStorei(n.UNPACK_PREMULTIPLY_ALPHA_WEBGL,!1),n.pixelStorei(n.UNPACK_COLORSPACE_CONVERSION_WEBGL,n.BROWSER_DEFAULT_WEBGL),n.pixelStorei(n.PACK_ROW_LENGTH,0),n.pixelStorei(n.PACK_SKIP_PIXELS,0),n.pixelStorei(n.PACK_SKIP_ROWS,0),n.pixelStorei(n.UNPACK_ROW_LENGTH,0),n.pixelStorei(n.UNPACK_IMAGE_HEIGHT,0),n.pixelStorei(n.UNPACK_SKIP_PIXELS,0),n.pixelStorei(n.UNPACK_SKIP_ROWS,0),n.pixelStorei(n.UNPACK_SKIP_IMAGES,0),f={},d={},j=null,ee={},u={},l={},h=new WeakMap,g=[],x=null,m=!1,p=null,v=null,M=null,S=null,b=null,w=null,_=null,y=new Ye(0,0,0),I=0,R=!1,P=null,D=null,O=null,L=null,k=null,Z.set(0,0,n.canvas.width,n.canvas.height),fe.set(0,0,n.canvas.width,n.canvas.height),s.reset(),a.reset(),o.reset()}return{buffers:{color:s,depth:a,stencil:o},enable:ge,disable:Ie,bindFramebuffer:mt,drawBuffers:Re,useProgram:$e,setBlending:Ht,setMaterial:Ct,setFlipSided:sn,setCullFace:dt,setLineWidth:jn,setPolygonOffset:It,setScissorTest:yn,activeTexture:bn,bindTexture:En,unbindTexture:B,compressedTexImage2D:Tn,compressedTexImage3D:ut,texImage2D:E,texImage3D:H,pixelStorei:Q,getParameter:ne,updateUBOMapping:Y,uniformBlockBinding:K,texStorage2D:Ne,texStorage3D:C,texSubImage2D:ft,texSubImage3D:pe,compressedTexSubImage2D:Pt,compressedTexSubImage3D:Ce,scissor:ae,viewport:de,reset:le}}function Lx(n,e,t,i,r,s,a){const o=e.has("WEBGL_multisampled_render_to_texture")?e.get("WEBGL_multisampled_render_to_texture"):null,l=typeof navigator>"u"?!1:/OculusBrowser/g.test(navigator.userAgent),c=new He,f=new WeakMap,d=new Set;let u;const h=new WeakMap,g=new Set,x=new FinalizationRegistry(C=>g.delete(C));let m=!1;try{m=typeof OffscreenCanvas<"u"&&new OffscreenCanvas(1,1).getContext("2d")!==null}catch{}function p(C,E){return m?new OffscreenCanvas(C,E):ba("canvas")}function v(C,E,H){let ne=1;const Q=Ne(C);if((Q.width>H||Q.height>H)&&(ne=H/Math.max(Q.width,Q.height)),ne<1)if(typeof HTMLImageElement<"u"&&C instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&C instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&C instanceof ImageBitmap||typeof VideoFrame<"u"&&C instanceof VideoFrame){const ae=Math.floor(ne*Q.width),de=Math.floor(ne*Q.height);u===void 0&&(u=p(ae,de));const Y=E?p(ae,de):u;return Y.width=ae,Y.height=de,Y.getContext("2d").drawImage(C,0,0,ae,de),Pe("WebGLRenderer: Texture has been resized from ("+Q.width+"x"+Q.height+") to ("+ae+"x"+de+")."),Y}else return"data"in C&&Pe("WebGLRenderer: Image in DataTexture is too big ("+Q.width+"x"+Q.height+")."),C;return C}function M(C){return C.generateMipmaps}function S(C){n.generateMipmap(C)}function b(C){return C.isWebGLCubeRenderTarget?n.TEXTURE_CUBE_MAP:C.isWebGL3DRenderTarget?n.TEXTURE_3D:C.isWebGLArrayRenderTarget||C.isCompressedArrayTexture?n.TEXTURE_2D_ARRAY:n.TEXTURE_2D}function w(C,E,H,ne,Q,ae=!1){if(C!==null){if(n[C]!==void 0)return n[C];Pe("WebGLRenderer: Attempt to use non-existing WebGL internal format '"+C+"'")}let de;ne&&(de=e.get("EXT_texture_norm16"),de||Pe("WebGLRenderer: Unable to use normalized textures without EXT_texture_norm16 extension"));let Y=E;if(E===n.RED&&(H===n.FLOAT&&(Y=n.R32F),H===n.HALF_FLOAT&&(Y=n.R16F),H===n.UNSIGNED_BYTE&&(Y=n.R8),H===n.UNSIGNED_SHORT&&de&&(Y=de.R16_EXT),H===n.SHORT&&de&&(Y=de.R16_SNORM_EXT)),E===n.RED_INTEGER&&(H===n.UNSIGNED_BYTE&&(Y=n.R8UI),H===n.UNSIGNED_SHORT&&(Y=n.R16UI),H===n.UNSIGNED_INT&&(Y=n.R32UI),H===n.BYTE&&(Y=n.R8I),H===n.SHORT&&(Y=n.R16I),H===n.INT&&(Y=n.R32I)),E===n.RG&&(H===n.FLOAT&&(Y=n.RG32F),H===n.HALF_FLOAT&&(Y=n.RG16F),H===n.UNSIGNED_BYTE&&(Y=n.RG8),H===n.UNSIGNED_SHORT&&de&&(Y=de.RG16_EXT),H===n.SHORT&&de&&(Y=de.RG16_SNORM_EXT)),E===n.RG_INTEGER&&(H===n.UNSIGNED_BYTE&&(Y=n.RG8UI),H===n.UNSIGNED_SHORT&&(Y=n.RG16UI),H===n.UNSIGNED_INT&&(Y=n.RG32UI),H===n.BYTE&&(Y=n.RG8I),H===n.SHORT&&(Y=n.RG16I),H===n.INT&&(Y=n.RG32I)),E===n.RGB_INTEGER&&(H===n.UNSIGNED_BYTE&&(Y=n.RGB8UI),H===n.UNSIGNED_SHORT&&(Y=n.RGB16UI),H===n.UNSIGNED_INT&&(Y=n.RGB32UI),H===n.BYTE&&(Y=n.RGB8I),H===n.SHORT&&(Y=n.RGB16I),H===n.INT&&(Y=n.RGB32I)),E===n.RGBA_INTEGER&&(H===n.UNSIGNED_BYTE&&(Y=n.RGBA8UI),H===n.UNSIGNED_SHORT&&(Y=n.RGBA16UI),H===n.UNSIGNED_INT&&(Y=n.RGBA32UI),H===n.BYTE&&(Y=n.RGBA8I),H===n.SHORT&&(Y=n.RGBA16I),H===n.INT&&(Y=n.RGBA32I)),E===n.RGB&&(H===n.UNSIGNED_SHORT&&de&&(Y=de.RGB16_EXT),H===n.SHORT&&de&&(Y=de.RGB16_SNORM_EXT),H===n.UNSIGNED_INT_5_9_9_9_REV&&(Y=n.RGB9_E5),H===n.UNSIGNED_INT_10F_11F_11F_REV&&(Y=n.R11F_G11F_B10F)),E===n.RGBA){const K=ae?Ma:Xe.getTransfer(Q);H===n.FLOAT&&(Y=n.RGBA32F),H===n.HALF_FLOAT&&(Y=n.RGBA16F),H===n.UNSIGNED_BYTE&&(Y=K===et?n.SRGB8_ALPHA8:n.RGBA8),H===n.UNSIGNED_SHORT&&de&&(Y=de.RGBA16_EXT),H===n.SHORT&&de&&(Y=de.RGBA16_SNORM_EXT),H===n.UNSIGNED_SHORT_4_4_4_4&&(Y=n.RGBA4),H===n.UNSIGNED_SHORT_5_5_5_1&&(Y=n.RGB5_A1)}return(Y===n.R16F||Y===n.R32F||Y===n.RG16F||Y===n.RG32F||Y===n.RGBA16F||Y===n.RGBA32F)&&e.get("EXT_color_buffer_float"),Y}function _(C,E){let H;return C?E===null||E===On||E===Er?H=n.DEPTH24_STENCIL8:E===Bn?H=n.DEPTH32F_STENCIL8:E===As&&(H=n.DEPTH24_STENCIL8,Pe("DepthTexture: 16 bit depth attachment is not supported with stencil. Using 24-bit attachment.")):E===null||E===On||E===Er?H=n.DEPTH_COMPONENT24:E===Bn?H=n.DEPTH_COMPONENT32F:E===As&&(H=n.DEPTH_COMPONENT16),H}function y(C,E){return M(C)===!0||C.isFramebufferTexture&&C.minFilter!==Ot&&C.minFilter!==tn?Math.log2(Math.max(E.width,E.height))+1:C.mipmaps.length>0?C.mipmaps.length:C.isCompressedTexture&&Array.isArray(C.image)?E.mipmaps.length:1}function I(C){const E=new WeakRef(C);i.get(C).__ref=E,g.add(E),x.register(C,E,E)}function R(C){const E=i.get(C).__ref;E!==void 0&&(g.delete(E),x.unregister(E))}function P(C){O(C.target)}function D(C){L(C.target)}function O(C){C.removeEventListener("dispose",P),R(C),V(C),C.isVideoTexture&&f.delete(C),C.isHTMLTexture&&d.delete(C)}function L(C){C.removeEventListener("dispose",D),R(C),te(C)}function k(){for(const C of g){const E=C.deref();E!==void 0&&(E.isRenderTarget===!0?L(E):O(E))}g.clear(),d.clear()}function V(C){const E=i.get(C);if(E.__webglInit===void 0)return;const H=C.source,ne=h.get(H);if(ne){const Q=ne[E.__cacheKey];Q.usedTimes--,Q.usedTimes===0&&W(C),Object.keys(ne).length===0&&h.delete(H)}i.remove(C)}function W(C){const E=i.get(C);n.deleteTexture(E.__webglTexture);const H=C.source,ne=h.get(H);delete ne[E.__cacheKey],a.memory.textures--}function te(C){const E=i.get(C);E.__depthDisposeCallback&&E.__depthDisposeCallback();const H=C.depthTexture;if(H&&H.renderTarget===C&&O(H),C.isWebGLCubeRenderTarget)for(let Q=0;Q<6;Q++){if(Array.isArray(E.__webglFramebuffer[Q]))for(let ae=0;ae<E.__webglFramebuffer[Q].length;ae++)n.deleteFramebuffer(E.__webglFramebuffer[Q][ae]);else n.deleteFramebuffer(E.__webglFramebuffer[Q]);E.__webglDepthbuffer&&n.deleteRenderbuffer(E.__webglDepthbuffer[Q])}else{if(Array.isArray(E.__webglFramebuffer))for(let Q=0;Q<E.__webglFramebuffer.length;Q++)n.deleteFramebuffer(E.__webglFramebuffer[Q]);else n.deleteFramebuffer(E.__webglFramebuffer);if(E.__webglDepthbuffer&&n.deleteRenderbuffer(E.__webglDepthbuffer),E.__webglMultisampledFramebuffer&&n.deleteFramebuffer(E.__webglMultisampledFramebuffer),E.__webglColorRenderbuffer)for(let Q=0;Q<E.__webglColorRenderbuffer.length;Q++)E.__webglColorRenderbuffer[Q]&&n.deleteRenderbuffer(E.__webglColorRenderbuffer[Q]);E.__webglDepthRenderbuffer&&n.deleteRenderbuffer(E.__webglDepthRenderbuffer)}const ne=C.textures;for(let Q=0,ae=ne.length;Q<ae;Q++){const de=i.get(ne[Q]);de.__webglTexture&&(n.deleteTexture(de.__webglTexture),a.memory.textures--),i.remove(ne[Q])}i.remove(C)}let $=0;function j(){$=0}function ee(){return $}function Se(C){$=C}function De(){const C=$;return C>=r.maxTextures&&Pe("WebGLTextures: Trying to use "+(C+1)+" texture units while this GPU supports only "+r.maxTextures),$+=1,C}function Z(C){const E=[];return E.push(C.wrapS),E.push(C.wrapT),E.push(C.wrapR||0),E.push(C.magFilter),E.push(C.minFilter),E.push(C.anisotropy),E.push(C.internalFormat),E.push(C.format),E.push(C.type),E.push(C.generateMipmaps),E.push(C.mipmapsAutoUpdate),E.push(C.premultiplyAlpha),E.push(C.flipY),E.push(C.unpackAlignment),E.push(C.colorSpace),E.join()}function fe(C,E){const H=i.get(C);if(C.isVideoTexture&&Pt(C),C.isRenderTargetTexture===!1&&C.isExternalTexture!==!0&&C.version>0&&H.__version!==C.version){const ne=C.image;if(ne===null)Pe("WebGLRenderer: Texture marked for update but no image data found.");else if(ne.complete===!1)Pe("WebGLRenderer: Texture marked for update but image is incomplete");else{Ct(H,C,E);return}}else C.isExternalTexture&&(H.__webglTexture=C.sourceTexture?C.sourceTexture:null);t.bindTexture(n.TEXTURE_2D,H.__webglTexture,n.TEXTURE0+E)}function xe(C,E){const H=i.get(C);if(C.isRenderTargetTexture===!1&&C.version>0&&H.__version!==C.version){Ct(H,C,E);return}else C.isExternalTexture&&(H.__webglTexture=C.sourceTexture?C.sourceTexture:null);t.bindTexture(n.TEXTURE_2D_ARRAY,H.__webglTexture,n.TEXTURE0+E)}function we(C,E){const H=i.get(C);if(C.isRenderTargetTexture===!1&&C.version>0&&H.__version!==C.version){Ct(H,C,E);return}t.bindTexture(n.TEXTURE_3D,H.__webglTexture,n.TEXTURE0+E)}function ge(C,E){const H=i.get(C);if(C.version>0&&H.__version!==C.version){sn(H,C,E);return}t.bindTexture(n.TEXTURE_CUBE_MAP,H.__webglTexture,n.TEXTURE0+E)}const Ie={[ml]:n.REPEAT,[ai]:n.CLAMP_TO_EDGE,[gl]:n.MIRRORED_REPEAT},mt={[Ot]:n.NEAREST,[Cm]:n.NEAREST_MIPMAP_NEAREST,[ha]:n.NEAREST_MIPMAP_LINEAR,[tn]:n.LINEAR,[_l]:n.LINEAR_MIPMAP_NEAREST,[yi]:n.LINEAR_MIPMAP_LINEAR},Re={[Im]:n.NEVER,[kf]:n.ALWAYS,[Nm]:n.LESS,[Of]:n.LEQUAL,[Um]:n.EQUAL,[Bf]:n.GEQUAL,[Fm]:n.GREATER,[Om]:n.NOTEQUAL};function $e(C,E){if(E.type===Bn&&e.has("OES_texture_float_linear")===!1&&(E.magFilter===tn||E.magFilter===_l||E.magFilter===ha||E.magFilter===yi||E.minFilter===tn||E.minFilter===_l||E.minFilter===ha||E.minFilter===yi)&&Pe("WebGLRenderer: Unable to use linear filtering with floating point textures. OES_texture_float_linear not supported on this device."),n.texParameteri(C,n.TEXTURE_WRAP_S,Ie[E.wrapS]),n.texParameteri(C,n.TEXTURE_WRAP_T,Ie[E.wrapT]),(C===n.TEXTURE_3D||C===n.TEXTURE_2D_ARRAY)&&n.texParameteri(C,n.TEXTURE_WRAP_R,Ie[E.wrapR]),n.texParameteri(C,n.TEXTURE_MAG_FILTER,mt[E.magFilter]),n.texParameteri(C,n.TEXTURE_MIN_FILTER,mt[E.minFilter]),E.compareFunction&&(n.texParameteri(C,n.TEXTURE_COMPARE_MODE,n.COMPARE_REF_TO_TEXTURE),n.texParameteri(C,n.TEXTURE_COMPARE_FUNC,Re[E.compareFunction])),e.has("EXT_texture_filter_anisotropic")===!0){if(E.magFilter===Ot||E.minFilter!==ha&&E.minFilter!==yi||E.type===Bn&&e.has("OES_texture_float_linear")===!1)return;if(E.anisotropy>1||i.get(E).__currentAnisotropy){const H=e.get("EXT_texture_filter_anisotropic");n.texParameterf(C,H.TEXTURE_MAX_ANISOTROPY_EXT,Math.min(E.anisotropy,r.getMaxAnisotropy())),i.get(E).__currentAnisotropy=E.anisotropy}}}function rt(C,E){let H=!1;C.__webglInit===void 0&&(C.__webglInit=!0,E.addEventListener("dispose",P),I(E));const ne=E.source;let Q=h.get(ne);Q===void 0&&(Q={},h.set(ne,Q));const ae=Z(E);if(ae!==C.__cacheKey){Q[ae]===void 0&&(Q[ae]={texture:n.createTexture(),usedTimes:0},a.memory.textures++,H=!0),Q[ae].usedTimes++;const de=Q[C.__cacheKey];de!==void 0&&(Q[C.__cacheKey].usedTimes--,de.usedTimes===0&&W(E)),C.__cacheKey=ae,C.__webglTexture=Q[ae].texture}return H}function Ge(C,E,H){return Math.floor(Math.floor(C/H)/E)}function Ht(C,E,H,ne){const ae=C.updateRanges;if(ae.length===0)t.texSubImage2D(n.TEXTURE_2D,0,0,0,E.width,E.height,H,ne,E.data);else{ae.sort((U,J)=>U.start-J.start);let de=0;for(let U=1;U<ae.length;U++){const J=ae[de],q=ae[U],ce=J.start+J.count,se=Ge(q.start,E.width,4),oe=Ge(J.start,E.width,4);q.start<=ce+1&&se===oe&&Ge(q.start+q.count-1,E.width,4)===se?J.count=Math.max(J.count,q.start+q.count-J.start):(++de,ae[de]=q)}ae.length=de+1;const Y=t.getParameter(n.UNPACK_ROW_LENGTH),K=t.getParameter(n.UNPACK_SKIP_PIXELS),le=t.getParameter(n.UNPACK_SKIP_ROWS);t.pixelStorei(n.UNPACK_ROW_LENGTH,E.width);for(let U=0,J=ae.length;U<J;U++){const q=ae[U],ce=Math.floor(q.start/4),se=Math.ceil(q.count/4),oe=ce%E.width,Te=Math.floor(ce/E.width),ze=se,re=1;t.pixelStorei(n.UNPACK_SKIP_PIXELS,oe),t.pixelStorei(n.UNPACK_SKIP_ROWS,Te),t.texSubImage2D(n.TEXTURE_2D,0,oe,Te,ze,re,H,ne,E.data)}C.clearUpdateRanges(),t.pixelStorei(n.UNPACK_ROW_LENGTH,Y),t.pixelStorei(n.UNPACK_SKIP_PIXELS,K),t.pixelStorei(n.UNPACK_SKIP_ROWS,le)}}function Ct(C,E,H){let ne=n.TEXTURE_2D;(E.isDataArrayTexture||E.isCompressedArrayTexture)&&(ne=n.TEXTURE_2D_ARRAY),E.isData3DTexture&&(ne=n.TEXTURE_3D);const Q=rt(C,E),ae=E.source;t.bindTexture(ne,C.__webglTexture,n.TEXTURE0+H);const de=i.get(ae);if(ae.version!==de.__version||Q===!0){if(t.activeTexture(n.TEXTURE0+H),(typeof ImageBitmap<"u"&&E.image instanceof ImageBitmap)===!1){const re=Xe.getPrimaries(Xe.workingColorSpace),Ae=E.colorSpace===Ti?null:Xe.getPrimaries(E.colorSpace),Be=E.colorSpace===Ti||re===Ae?n.NONE:n.BROWSER_DEFAULT_WEBGL;t.pixelStorei(n.UNPACK_FLIP_Y_WEBGL,E.flipY),t.pixelStorei(n.UNPACK_PREMULTIPLY_ALPHA_WEBGL,E.premultiplyAlpha),t.pixelStorei(n.UNPACK_COLORSPACE_CONVERSION_WEBGL,Be)}t.pixelStorei(n.UNPACK_ALIGNMENT,E.unpackAlignment);let K=v(E.image,!1,r.maxTextureSize);K=Ce(E,K);const le=s.convert(E.format,E.colorSpace),U=s.convert(E.type);let J=w(E.internalFormat,le,U,E.normalized,E.colorSpace,E.isVideoTexture);$e(ne,E);let q;const ce=E.mipmaps,se=E.isVideoTexture!==!0,oe=de.__version===void 0||Q===!0,Te=ae.dataReady,ze=y(E,K);if(E.isDepthTexture)J=_(E.format===Ei,E.type),oe&&(se?t.texStorage2D(n.TEXTURE_2D,1,J,K.width,K.height):t.texImage2D(n.TEXTURE_2D,0,J,K.width,K.height,0,le,U,null));else if(E.isDataTexture)if(ce.length>0){se&&oe&&t.texStorage2D(n.TEXTURE_2D,ze,J,ce[0].width,ce[0].height);for(let re=0,Ae=ce.length;re<Ae;re++)q=ce[re],se?Te&&t.texSubImage2D(n.TEXTURE_2D,re,0,0,q.width,q.height,le,U,q.data):t.texImage2D(n.TEXTURE_2D,re,J,q.width,q.height,0,le,U,q.data);E.generateMipmaps=!1}else se?(oe&&t.texStorage2D(n.TEXTURE_2D,ze,J,K.width,K.height),Te&&Ht(E,K,le,U)):t.texImage2D(n.TEXTURE_2D,0,J,K.width,K.height,0,le,U,K.data);else if(E.isCompressedTexture)if(E.isCompressedArrayTexture){se&&oe&&t.texStorage3D(n.TEXTURE_2D_ARRAY,ze,J,ce[0].width,ce[0].height,K.depth);for(let re=0,Ae=ce.length;re<Ae;re++)if(q=ce[re],E.format!==zn)if(le!==null)if(se){if(Te)if(E.layerUpdates.size>0){const Be=Ed(q.width,q.height,E.format,E.type);for(const _e of E.layerUpdates){const nt=q.data.subarray(_e*Be/q.data.BYTES_PER_ELEMENT,(_e+1)*Be/q.data.BYTES_PER_ELEMENT);t.compressedTexSubImage3D(n.TEXTURE_2D_ARRAY,re,0,0,_e,q.width,q.height,1,le,nt)}}else t.compressedTexSubImage3D(n.TEXTURE_2D_ARRAY,re,0,0,0,q.width,q.height,K.depth,le,q.data)}else t.compressedTexImage3D(n.TEXTURE_2D_ARRAY,re,J,q.width,q.height,K.depth,0,q.data,0,0);else Pe("WebGLRenderer: Attempt to load unsupported compressed texture format in .uploadTexture()");else se?Te&&t.texSubImage3D(n.TEXTURE_2D_ARRAY,re,0,0,0,q.width,q.height,K.depth,le,U,q.data):t.texImage3D(n.TEXTURE_2D_ARRAY,re,J,q.width,q.height,K.depth,0,le,U,q.data);E.layerUpdates.size>0&&E.clearLayerUpdates()}else{se&&oe&&t.texStorage2D(n.TEXTURE_2D,ze,J,ce[0].width,ce[0].height);for(let re=0,Ae=ce.length;re<Ae;re++)q=ce[re],E.format!==zn?le!==null?se?Te&&t.compressedTexSubImage2D(n.TEXTURE_2D,re,0,0,q.width,q.height,le,q.data):t.compressedTexImage2D(n.TEXTURE_2D,re,J,q.width,q.height,0,q.data):Pe("WebGLRenderer: Attempt to load unsupported compressed texture format in .uploadTexture()"):se?Te&&t.texSubImage2D(n.TEXTURE_2D,re,0,0,q.width,q.height,le,U,q.data):t.texImage2D(n.TEXTURE_2D,re,J,q.width,q.height,0,le,U,q.data)}else if(E.isDataArrayTexture)if(se){if(oe&&t.texStorage3D(n.TEXTURE_2D_ARRAY,ze,J,K.width,K.height,K.depth),Te)if(E.layerUpdates.size>0){const re=Ed(K.width,K.height,E.format,E.type);for(const Ae of E.layerUpdates){const Be=K.data.subarray(Ae*re/K.data.BYTES_PER_ELEMENT,(Ae+1)*re/K.data.BYTES_PER_ELEMENT);t.texSubImage3D(n.TEXTURE_2D_ARRAY,0,0,0,Ae,K.width,K.height,1,le,U,Be)}E.clearLayerUpdates()}else t.texSubImage3D(n.TEXTURE_2D_ARRAY,0,0,0,0,K.width,K.height,K.depth,le,U,K.data)}else t.texImage3D(n.TEXTURE_2D_ARRAY,0,J,K.width,K.height,K.depth,0,le,U,K.data);else if(E.isData3DTexture)se?(oe&&t.texStorage3D(n.TEXTURE_3D,ze,J,K.width,K.height,K.depth),Te&&t.texSubImage3D(n.TEXTURE_3D,0,0,0,0,K.width,K.height,K.depth,le,U,K.data)):t.texImage3D(n.TEXTURE_3D,0,J,K.width,K.height,K.depth,0,le,U,K.data);else if(E.isFramebufferTexture){if(oe)if(se)t.texStorage2D(n.TEXTURE_2D,ze,J,K.width,K.height);else{let re=K.width,Ae=K.height;for(let Be=0;Be<ze;Be++)t.texImage2D(n.TEXTURE_2D,Be,J,re,Ae,0,le,U,null),re>>=1,Ae>>=1}}else if(E.isHTMLTexture){if("texElementImage2D"in n){const re=n.canvas;if(re.hasAttribute("layoutsubtree")||re.setAttribute("layoutsubtree","true"),K.parentNode!==re){re.appendChild(K),d.add(E),re.onpaint=Ae=>{const Be=Ae.changedElements;for(const _e of d)Be.includes(_e.image)&&(_e.needsUpdate=!0)},re.requestPaint();return}if(n.texElementImage2D.length===3)n.texElementImage2D(n.TEXTURE_2D,n.RGBA8,K);else{const Be=n.RGBA,_e=n.RGBA,nt=n.UNSIGNED_BYTE;n.texElementImage2D(n.TEXTURE_2D,0,Be,_e,nt,K)}n.texParameteri(n.TEXTURE_2D,n.TEXTURE_MIN_FILTER,n.LINEAR),n.texParameteri(n.TEXTURE_2D,n.TEXTURE_WRAP_S,n.CLAMP_TO_EDGE),n.texParameteri(n.TEXTURE_2D,n.TEXTURE_WRAP_T,n.CLAMP_TO_EDGE)}}else if(ce.length>0){if(se&&oe){const re=Ne(ce[0]);t.texStorage2D(n.TEXTURE_2D,ze,J,re.width,re.height)}for(let re=0,Ae=ce.length;re<Ae;re++)q=ce[re],se?Te&&t.texSubImage2D(n.TEXTURE_2D,re,0,0,le,U,q):t.texImage2D(n.TEXTURE_2D,re,J,le,U,q);E.generateMipmaps=!1}else if(se){if(oe){const re=Ne(K);t.texStorage2D(n.TEXTURE_2D,ze,J,re.width,re.height)}Te&&t.texSubImage2D(n.TEXTURE_2D,0,0,0,le,U,K)}else t.texImage2D(n.TEXTURE_2D,0,J,le,U,K);M(E)&&E.mipmapsAutoUpdate===!0&&S(ne),de.__version=ae.version,E.onUpdate&&E.onUpdate(E)}C.__version=E.version}function sn(C,E,H){if(E.image.length!==6)return;const ne=rt(C,E),Q=E.source;t.bindTexture(n.TEXTURE_CUBE_MAP,C.__webglTexture,n.TEXTURE0+H);const ae=i.get(Q);if(Q.version!==ae.__version||ne===!0){t.activeTexture(n.TEXTURE0+H);const de=Xe.getPrimaries(Xe.workingColorSpace),Y=E.colorSpace===Ti?null:Xe.getPrimaries(E.colorSpace),K=E.colorSpace===Ti||de===Y?n.NONE:n.BROWSER_DEFAULT_WEBGL;t.pixelStorei(n.UNPACK_FLIP_Y_WEBGL,E.flipY),t.pixelStorei(n.UNPACK_PREMULTIPLY_ALPHA_WEBGL,E.premultiplyAlpha),t.pixelStorei(n.UNPACK_ALIGNMENT,E.unpackAlignment),t.pixelStorei(n.UNPACK_COLORSPACE_CONVERSION_WEBGL,K);const le=E.isCompressedTexture||E.image[0].isCompressedTexture,U=E.image[0]&&E.image[0].isDataTexture,J=[];for(let _e=0;_e<6;_e++)!le&&!U?J[_e]=v(E.image[_e],!0,r.maxCubemapSize):J[_e]=U?E.image[_e].image:E.image[_e],J[_e]=Ce(E,J[_e]);const q=J[0],ce=s.convert(E.format,E.colorSpace),se=s.convert(E.type);let oe=w(E.internalFormat,ce,se,E.normalized,E.colorSpace);const Te=E.isVideoTexture!==!0,ze=ae.__version===void 0||ne===!0,re=Q.dataReady;let Ae=y(E,q);$e(n.TEXTURE_CUBE_MAP,E);let Be;if(E.isDepthTexture){if(oe=_(E.format===Ei,E.type),ze)if(Te)t.texStorage2D(n.TEXTURE_CUBE_MAP,1,oe,q.width,q.height);else for(let _e=0;_e<6;_e++)t.texImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,0,oe,q.width,q.height,0,ce,se,null)}else if(le){Te&&ze&&t.texStorage2D(n.TEXTURE_CUBE_MAP,Ae,oe,q.width,q.height);for(let _e=0;_e<6;_e++){Be=J[_e].mipmaps;for(let nt=0;nt<Be.length;nt++){const Nt=Be[nt];E.format!==zn?ce!==null?Te?re&&t.compressedTexSubImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt,0,0,Nt.width,Nt.height,ce,Nt.data):t.compressedTexImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt,oe,Nt.width,Nt.height,0,Nt.data):Pe("WebGLRenderer: Attempt to load unsupported compressed texture format in .setTextureCube()"):Te?re&&t.texSubImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt,0,0,Nt.width,Nt.height,ce,se,Nt.data):t.texImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt,oe,Nt.width,Nt.height,0,ce,se,Nt.data)}}}else{if(Be=E.mipmaps,Te&&ze){Be.length>0&&Ae++;const _e=Ne(J[0]);t.texStorage2D(n.TEXTURE_CUBE_MAP,Ae,oe,_e.width,_e.height)}for(let _e=0;_e<6;_e++)if(U){Te?re&&t.texSubImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,0,0,0,J[_e].width,J[_e].height,ce,se,J[_e].data):t.texImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,0,oe,J[_e].width,J[_e].height,0,ce,se,J[_e].data);for(let nt=0;nt<Be.length;nt++){const Xi=Be[nt].image[_e].image;Te?re&&t.texSubImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt+1,0,0,Xi.width,Xi.height,ce,se,Xi.data):t.texImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt+1,oe,Xi.width,Xi.height,0,ce,se,Xi.data)}}else{Te?re&&t.texSubImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,0,0,0,ce,se,J[_e]):t.texImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,0,oe,ce,se,J[_e]);for(let nt=0;nt<Be.length;nt++){const Nt=Be[nt];Te?re&&t.texSubImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt+1,0,0,ce,se,Nt.image[_e]):t.texImage2D(n.TEXTURE_CUBE_MAP_POSITIVE_X+_e,nt+1,oe,ce,se,Nt.image[_e])}}}M(E)&&E.mipmapsAutoUpdate===!0&&S(n.TEXTURE_CUBE_MAP),ae.__version=Q.version,E.onUpdate&&E.onUpdate(E)}C.__version=E.version}function dt(C,E,H,ne,Q,ae){const de=s.convert(H.format,H.colorSpace),Y=s.convert(H.type),K=w(H.internalFormat,de,Y,H.normalized,H.colorSpace),le=i.get(E),U=i.get(H);if(U.__renderTarget=E,!le.__hasExternalTextures){const J=Math.max(1,E.width>>ae),q=Math.max(1,E.height>>ae);Q===n.TEXTURE_3D||Q===n.TEXTURE_2D_ARRAY?t.texImage3D(Q,ae,K,J,q,E.depth,0,de,Y,null):t.texImage2D(Q,ae,K,J,q,0,de,Y,null)}t.bindFramebuffer(n.FRAMEBUFFER,C),pe(E)?o.framebufferTexture2DMultisampleEXT(n.FRAMEBUFFER,ne,Q,U.__webglTexture,0,ft(E)):(Q===n.TEXTURE_2D||Q>=n.TEXTURE_CUBE_MAP_POSITIVE_X&&Q<=n.TEXTURE_CUBE_MAP_NEGATIVE_Z)&&n.framebufferTexture2D(n.FRAMEBUFFER,ne,Q,U.__webglTexture,ae),t.bindFramebuffer(n.FRAMEBUFFER,null)}function jn(C,E,H){if(n.bindRenderbuffer(n.RENDERBUFFER,C),E.depthBuffer){const ne=E.depthTexture,Q=ne&&ne.isDepthTexture?ne.type:null,ae=_(E.stencilBuffer,Q),de=E.stencilBuffer?n.DEPTH_STENCIL_ATTACHMENT:n.DEPTH_ATTACHMENT;pe(E)?o.renderbufferStorageMultisampleEXT(n.RENDERBUFFER,ft(E),ae,E.width,E.height):H?n.renderbufferStorageMultisample(n.RENDERBUFFER,ft(E),ae,E.width,E.height):n.renderbufferStorage(n.RENDERBUFFER,ae,E.width,E.height),n.framebufferRenderbuffer(n.FRAMEBUFFER,de,n.RENDERBUFFER,C)}else{const ne=E.textures;for(let Q=0;Q<ne.length;Q++){const ae=ne[Q],de=s.convert(ae.format,ae.colorSpace),Y=s.convert(ae.type),K=w(ae.internalFormat,de,Y,ae.normalized,ae.colorSpace);pe(E)?o.renderbufferStorageMultisampleEXT(n.RENDERBUFFER,ft(E),K,E.width,E.height):H?n.renderbufferStorageMultisample(n.RENDERBUFFER,ft(E),K,E.width,E.height):n.renderbufferStorage(n.RENDERBUFFER,K,E.width,E.height)}}n.bindRenderbuffer(n.RENDERBUFFER,null)}function It(C,E,H){const ne=E.isWebGLCubeRenderTarget===!0;if(t.bindFramebuffer(n.FRAMEBUFFER,C),!(E.depthTexture&&E.depthTexture.isDepthTexture))throw new Error("THREE.WebGLTextures: renderTarget.depthTexture must be an instance of THREE.DepthTexture.");const Q=i.get(E.depthTexture);Q.__renderTarget=E;const ae=ne?E.depthTexture.image[0]:E.depthTexture.image;(!Q.__webglTexture||ae.width!==E.width||ae.height!==E.height)&&(ae.width=E.width,ae.height=E.height,E.depthTexture.needsUpdate=!0),ne?ge(E.depthTexture,0):fe(E.depthTexture,0);const de=Q.__webglTexture,Y=ft(E),K=ne?n.TEXTURE_CUBE_MAP_POSITIVE_X+H:n.TEXTURE_2D,le=E.depthTexture.format===Ei?n.DEPTH_STENCIL_ATTACHMENT:n.DEPTH_ATTACHMENT;if(E.depthTexture.format===bi)pe(E)?o.framebufferTexture2DMultisampleEXT(n.FRAMEBUFFER,le,K,de,0,Y):n.framebufferTexture2D(n.FRAMEBUFFER,le,K,de,0);else if(E.depthTexture.format===Ei)pe(E)?o.framebufferTexture2DMultisampleEXT(n.FRAMEBUFFER,le,K,de,0,Y):n.framebufferTexture2D(n.FRAMEBUFFER,le,K,de,0);else throw new Error("THREE.WebGLTextures: Unknown depthTexture format.")}function yn(C){const E=i.get(C),H=C.isWebGLCubeRenderTarget===!0;if(E.__boundDepthTexture!==C.depthTexture){const ne=C.depthTexture;if(E.__depthDisposeCallback&&E.__depthDisposeCallback(),ne){const Q=()=>{delete E.__boundDepthTexture,delete E.__depthDisposeCallback,ne.removeEventListener("dispose",Q)};ne.addEventListener("dispose",Q),E.__depthDisposeCallback=Q}E.__boundDepthTexture=ne}if(C.depthTexture&&!E.__autoAllocateDepthBuffer)if(H)for(let ne=0;ne<6;ne++)It(E.__webglFramebuffer[ne],C,ne);else C.texture.mipmaps.length>0?It(E.__webglFramebuffer[0],C,0):It(E.__webglFramebuffer,C,0);else if(H){E.__webglDepthbuffer=[];for(let ne=0;ne<6;ne++)if(t.bindFramebuffer(n.FRAMEBUFFER,E.__webglFramebuffer[ne]),E.__webglDepthbuffer[ne]===void 0)E.__webglDepthbuffer[ne]=n.createRenderbuffer(),jn(E.__webglDepthbuffer[ne],C,!1);else{const Q=C.stencilBuffer?n.DEPTH_STENCIL_ATTACHMENT:n.DEPTH_ATTACHMENT,ae=E.__webglDepthbuffer[ne];n.bindRenderbuffer(n.RENDERBUFFER,ae),n.framebufferRenderbuffer(n.FRAMEBUFFER,Q,n.RENDERBUFFER,ae)}}else if(C.texture.mipmaps.length>0?t.bindFramebuffer(n.FRAMEBUFFER,E.__webglFramebuffer[0]):t.bindFramebuffer(n.FRAMEBUFFER,E.__webglFramebuffer),E.__webglDepthbuffer===void 0)E.__webglDepthbuffer=n.createRenderbuffer(),jn(E.__webglDepthbuffer,C,!1);else{const Q=C.stencilBuffer?n.DEPTH_STENCIL_ATTACHMENT:n.DEPTH_ATTACHMENT,ae=E.__webglDepthbuffer;n.bindRenderbuffer(n.RENDERBUFFER,ae),n.framebufferRenderbuffer(n.FRAMEBUFFER,Q,n.RENDERBUFFER,ae)}t.bindFramebuffer(n.FRAMEBUFFER,null)}function bn(C,E,H){const ne=i.get(C);E!==void 0&&dt(ne.__webglFramebuffer,C,C.texture,n.COLOR_ATTACHMENT0,n.TEXTURE_2D,0),H!==void 0&&yn(C)}function En(C){const E=C.texture,H=i.get(C),ne=i.get(E);C.addEventListener("dispose",D),I(C);const Q=C.textures,ae=C.isWebGLCubeRenderTarget===!0,de=Q.length>1;if(de||(ne.__webglTexture===void 0&&(ne.__webglTexture=n.createTexture()),ne.__version=E.version,a.memory.textures++),ae){H.__webglFramebuffer=[];for(let Y=0;Y<6;Y++)if(E.mipmaps.length>0){H.__webglFramebuffer[Y]=[];for(let K=0;K<E.mipmaps.length;K++)H.__webglFramebuffer[Y][K]=n.createFramebuffer()}else H.__webglFramebuffer[Y]=n.createFramebuffer()}else{if(E.mipmaps.length>0){H.__webglFramebuffer=[];for(let Y=0;Y<E.mipmaps.length;Y++)H.__webglFramebuffer[Y]=n.createFramebuffer()}else H.__webglFramebuffer=n.createFramebuffer();if(de)for(let Y=0,K=Q.length;Y<K;Y++){const le=i.get(Q[Y]);le.__webglTexture===void 0&&(le.__webglTexture=n.createTexture(),a.memory.textures++)}if(C.samples>0&&pe(C)===!1){H.__webglMultisampledFramebuffer=n.createFramebuffer(),H.__webglColorRenderbuffer=[],t.bindFramebuffer(n.FRAMEBUFFER,H.__webglMultisampledFramebuffer);for(let Y=0;Y<Q.length;Y++){const K=Q[Y];H.__webglColorRenderbuffer[Y]=n.createRenderbuffer(),n.bindRenderbuffer(n.RENDERBUFFER,H.__webglColorRenderbuffer[Y]);const le=s.convert(K.format,K.colorSpace),U=s.convert(K.type),J=w(K.internalFormat,le,U,K.normalized,K.colorSpace,C.isXRRenderTarget===!0),q=ft(C);n.renderbufferStorageMultisample(n.RENDERBUFFER,q,J,C.width,C.height),n.framebufferRenderbuffer(n.FRAMEBUFFER,n.COLOR_ATTACHMENT0+Y,n.RENDERBUFFER,H.__webglColorRenderbuffer[Y])}n.bindRenderbuffer(n.RENDERBUFFER,null),C.depthBuffer&&(H.__webglDepthRenderbuffer=n.createRenderbuffer(),jn(H.__webglDepthRenderbuffer,C,!0)),t.bindFramebuffer(n.FRAMEBUFFER,null)}}if(ae){t.bindTexture(n.TEXTURE_CUBE_MAP,ne.__webglTexture),$e(n.TEXTURE_CUBE_MAP,E);for(let Y=0;Y<6;Y++)if(E.mipmaps.length>0)for(let K=0;K<E.mipmaps.length;K++)dt(H.__webglFramebuffer[Y][K],C,E,n.COLOR_ATTACHMENT0,n.TEXTURE_CUBE_MAP_POSITIVE_X+Y,K);else dt(H.__webglFramebuffer[Y],C,E,n.COLOR_ATTACHMENT0,n.TEXTURE_CUBE_MAP_POSITIVE_X+Y,0);M(E)?S(n.TEXTURE_CUBE_MAP):E.mipmaps.length>0&&n.texParameteri(n.TEXTURE_CUBE_MAP,n.TEXTURE_MAX_LEVEL,E.mipmaps.length-1),t.unbindTexture()}else if(de){for(let Y=0,K=Q.length;Y<K;Y++){const le=Q[Y],U=i.get(le);let J=n.TEXTURE_2D;(C.isWebGL3DRenderTarget||C.isWebGLArrayRenderTarget)&&(J=C.isWebGL3DRenderTarget?n.TEXTURE_3D:n.TEXTURE_2D_ARRAY),t.bindTexture(J,U.__webglTexture),$e(J,le),dt(H.__webglFramebuffer,C,le,n.COLOR_ATTACHMENT0+Y,J,0),M(le)&&S(J)}t.unbindTexture()}else{let Y=n.TEXTURE_2D;if((C.isWebGL3DRenderTarget||C.isWebGLArrayRenderTarget)&&(Y=C.isWebGL3DRenderTarget?n.TEXTURE_3D:n.TEXTURE_2D_ARRAY),t.bindTexture(Y,ne.__webglTexture),$e(Y,E),E.mipmaps.length>0)for(let K=0;K<E.mipmaps.length;K++)dt(H.__webglFramebuffer[K],C,E,n.COLOR_ATTACHMENT0,Y,K);else dt(H.__webglFramebuffer,C,E,n.COLOR_ATTACHMENT0,Y,0);M(E)?S(Y):E.mipmaps.length>0&&n.texParameteri(Y,n.TEXTURE_MAX_LEVEL,E.mipmaps.length-1),t.unbindTexture()}C.depthBuffer&&yn(C)}function B(C){const E=C.textures;for(let H=0,ne=E.length;H<ne;H++){const Q=E[H];if(M(Q)&&Q.mipmapsAutoUpdate===!0){const ae=b(C),de=i.get(Q).__webglTexture;t.bindTexture(ae,de),S(ae),t.unbindTexture()}}}const Tn=[];function ut(C){if(C.samples>0){if(pe(C)===!1){const E=C.textures,H=C.width,ne=C.height;let Q=n.COLOR_BUFFER_BIT;const ae=C.stencilBuffer?n.DEPTH_STENCIL_ATTACHMENT:n.DEPTH_ATTACHMENT,de=i.get(C),Y=E.length>1;if(Y)for(let le=0;le<E.length;le++)t.bindFramebuffer(n.FRAMEBUFFER,de.__webglMultisampledFramebuffer),n.framebufferRenderbuffer(n.FRAMEBUFFER,n.COLOR_ATTACHMENT0+le,n.RENDERBUFFER,null),t.bindFramebuffer(n.FRAMEBUFFER,de.__webglFramebuffer),n.framebufferTexture2D(n.DRAW_FRAMEBUFFER,n.COLOR_ATTACHMENT0+le,n.TEXTURE_2D,null,0);t.bindFramebuffer(n.READ_FRAMEBUFFER,de.__webglMultisampledFramebuffer),C.texture.mipmaps.length>0?t.bindFramebuffer(n.DRAW_FRAMEBUFFER,de.__webglFramebuffer[0]):t.bindFramebuffer(n.DRAW_FRAMEBUFFER,de.__webglFramebuffer);for(let le=0;le<E.length;le++){if(C.resolveDepthBuffer&&(C.depthBuffer&&(Q|=n.DEPTH_BUFFER_BIT),C.stencilBuffer&&C.resolveStencilBuffer&&(Q|=n.STENCIL_BUFFER_BIT)),Y){n.framebufferRenderbuffer(n.READ_FRAMEBUFFER,n.COLOR_ATTACHMENT0,n.RENDERBUFFER,de.__webglColorRenderbuffer[le]);const U=i.get(E[le]).__webglTexture;n.framebufferTexture2D(n.DRAW_FRAMEBUFFER,n.COLOR_ATTACHMENT0,n.TEXTURE_2D,U,0)}n.blitFramebuffer(0,0,H,ne,0,0,H,ne,Q,n.NEAREST),l===!0&&(Tn.length=0,Tn.push(n.COLOR_ATTACHMENT0+le),C.depthBuffer&&C.storeMultisampledDepthBuffer===!1&&Tn.push(ae),n.invalidateFramebuffer(n.READ_FRAMEBUFFER,Tn))}if(t.bindFramebuffer(n.READ_FRAMEBUFFER,null),t.bindFramebuffer(n.DRAW_FRAMEBUFFER,null),Y)for(let le=0;le<E.length;le++){t.bindFramebuffer(n.FRAMEBUFFER,de.__webglMultisampledFramebuffer),n.framebufferRenderbuffer(n.FRAMEBUFFER,n.COLOR_ATTACHMENT0+le,n.RENDERBUFFER,de.__webglColorRenderbuffer[le]);const U=i.get(E[le]).__webglTexture;t.bindFramebuffer(n.FRAMEBUFFER,de.__webglFramebuffer),n.framebufferTexture2D(n.DRAW_FRAMEBUFFER,n.COLOR_ATTACHMENT0+le,n.TEXTURE_2D,U,0)}t.bindFramebuffer(n.DRAW_FRAMEBUFFER,de.__webglMultisampledFramebuffer)}else if(C.depthBuffer&&C.storeMultisampledDepthBuffer===!1&&l){const E=C.stencilBuffer?n.DEPTH_STENCIL_ATTACHMENT:n.DEPTH_ATTACHMENT;n.invalidateFramebuffer(n.DRAW_FRAMEBUFFER,[E])}}}function ft(C){return Math.min(r.maxSamples,C.samples)}function pe(C){const E=i.get(C);return C.samples>0&&e.has("WEBGL_multisampled_render_to_texture")===!0&&E.__useRenderToTexture!==!1}function Pt(C){const E=a.render.frame;f.get(C)!==E&&(f.set(C,E),C.update())}function Ce(C,E){const H=C.colorSpace,ne=C.format,Q=C.type;return C.isCompressedTexture===!0||C.isVideoTexture===!0||H!==Sa&&H!==Ti&&(Xe.getTransfer(H)===et?(ne!==zn||Q!==hn)&&Pe("WebGLTextures: sRGB encoded textures have to use RGBAFormat and UnsignedByteType."):Ke("WebGLTextures: Unsupported texture color space:",H)),E}function Ne(C){return typeof HTMLImageElement<"u"&&C instanceof HTMLImageElement?(c.width=C.naturalWidth||C.width,c.height=C.naturalHeight||C.height):typeof VideoFrame<"u"&&C instanceof VideoFrame?(c.width=C.displayWidth,c.height=C.displayHeight):(c.width=C.width,c.height=C.height),c}this.allocateTextureUnit=De,this.resetTextureUnits=j,this.getTextureUnits=ee,this.setTextureUnits=Se,this.setTexture2D=fe,this.setTexture2DArray=xe,this.setTexture3D=we,this.setTextureCube=ge,this.rebindTextures=bn,this.setupRenderTarget=En,this.updateRenderTargetMipmap=B,this.updateMultisampleRenderTarget=ut,this.setupDepthRenderbuffer=yn,this.setupFrameBufferTexture=dt,this.useMultisampledRTT=pe,this.dispose=k}function Dx(n,e){function t(i,r=Ti){let s;const a=Xe.getTransfer(r);if(i===hn)return n.UNSIGNED_BYTE;if(i===xl)return n.UNSIGNED_SHORT_4_4_4_4;if(i===Sl)return n.UNSIGNED_SHORT_5_5_5_1;if(i===Lf)return n.UNSIGNED_INT_5_9_9_9_REV;if(i===Df)return n.UNSIGNED_INT_10F_11F_11F_REV;if(i===Cf)return n.BYTE;if(i===Pf)return n.SHORT;if(i===As)return n.UNSIGNED_SHORT;if(i===vl)return n.INT;if(i===On)return n.UNSIGNED_INT;if(i===Bn)return n.FLOAT;if(i===kn)return n.HALF_FLOAT;if(i===If)return n.ALPHA;if(i===Nf)return n.RGB;if(i===zn)return n.RGBA;if(i===bi)return n.DEPTH_COMPONENT;if(i===Ei)return n.DEPTH_STENCIL;if(i===Uf)return n.RED;if(i===Ml)return n.RED_INTEGER;if(i===Zi)return n.RG;if(i===yl)return n.RG_INTEGER;if(i===bl)return n.RGBA_INTEGER;if(i===pa||i===ma||i===ga||i===_a)if(a===et)if(s=e.get("WEBGL_compressed_texture_s3tc_srgb"),s!==null){if(i===pa)return s.COMPRESSED_SRGB_S3TC_DXT1_EXT;if(i===ma)return s.COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT;if(i===ga)return s.COMPRESSED_SRGB_ALPHA_S3TC_DXT3_EXT;if(i===_a)return s.COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT}else return null;else if(s=e.get("WEBGL_compressed_texture_s3tc"),s!==null){if(i===pa)return s.COMPRESSED_RGB_S3TC_DXT1_EXT;if(i===ma)return s.COMPRESSED_RGBA_S3TC_DXT1_EXT;if(i===ga)return s.COMPRESSED_RGBA_S3TC_DXT3_EXT;if(i===_a)return s.COMPRESSED_RGBA_S3TC_DXT5_EXT}else return null;if(i===El||i===Tl||i===Al||i===wl)if(s=e.get("WEBGL_compressed_texture_pvrtc"),s!==null){if(i===El)return s.COMPRESSED_RGB_PVRTC_4BPPV1_IMG;if(i===Tl)return s.COMPRESSED_RGB_PVRTC_2BPPV1_IMG;if(i===Al)return s.COMPRESSED_RGBA_PVRTC_4BPPV1_IMG;if(i===wl)return s.COMPRESSED_RGBA_PVRTC_2BPPV1_IMG}else return null;if(i===Rl||i===Cl||i===Pl||i===Ll||i===Dl||i===va||i===Il)if(s=e.get("WEBGL_compressed_texture_etc"),s!==null){if(i===Rl||i===Cl)return a===et?s.COMPRESSED_SRGB8_ETC2:s.COMPRESSED_RGB8_ETC2;if(i===Pl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:s.COMPRESSED_RGBA8_ETC2_EAC;if(i===Ll)return s.COMPRESSED_R11_EAC;if(i===Dl)return s.COMPRESSED_SIGNED_R11_EAC;if(i===va)return s.COMPRESSED_RG11_EAC;if(i===Il)return s.COMPRESSED_SIGNED_RG11_EAC}else return null;if(i===Nl||i===Ul||i===Fl||i===Ol||i===Bl||i===kl||i===zl||i===Hl||i===Gl||i===Vl||i===Wl||i===Xl||i===$l||i===ql)if(s=e.get("WEBGL_compressed_texture_astc"),s!==null){if(i===Nl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_4x4_KHR:s.COMPRESSED_RGBA_ASTC_4x4_KHR;if(i===Ul)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_5x4_KHR:s.COMPRESSED_RGBA_ASTC_5x4_KHR;if(i===Fl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_5x5_KHR:s.COMPRESSED_RGBA_ASTC_5x5_KHR;if(i===Ol)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_6x5_KHR:s.COMPRESSED_RGBA_ASTC_6x5_KHR;if(i===Bl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_6x6_KHR:s.COMPRESSED_RGBA_ASTC_6x6_KHR;if(i===kl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_8x5_KHR:s.COMPRESSED_RGBA_ASTC_8x5_KHR;if(i===zl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_8x6_KHR:s.COMPRESSED_RGBA_ASTC_8x6_KHR;if(i===Hl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_8x8_KHR:s.COMPRESSED_RGBA_ASTC_8x8_KHR;if(i===Gl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_10x5_KHR:s.COMPRESSED_RGBA_ASTC_10x5_KHR;if(i===Vl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_10x6_KHR:s.COMPRESSED_RGBA_ASTC_10x6_KHR;if(i===Wl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_10x8_KHR:s.COMPRESSED_RGBA_ASTC_10x8_KHR;if(i===Xl)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_10x10_KHR:s.COMPRESSED_RGBA_ASTC_10x10_KHR;if(i===$l)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_12x10_KHR:s.COMPRESSED_RGBA_ASTC_12x10_KHR;if(i===ql)return a===et?s.COMPRESSED_SRGB8_ALPHA8_ASTC_12x12_KHR:s.COMPRESSED_RGBA_ASTC_12x12_KHR}else return null;if(i===Yl||i===Kl||i===Zl)if(s=e.get("EXT_texture_compression_bptc"),s!==null){if(i===Yl)return a===et?s.COMPRESSED_SRGB_ALPHA_BPTC_UNORM_EXT:s.COMPRESSED_RGBA_BPTC_UNORM_EXT;if(i===Kl)return s.COMPRESSED_RGB_BPTC_SIGNED_FLOAT_EXT;if(i===Zl)return s.COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT_EXT}else return null;if(i===Jl||i===Ql||i===xa||i===jl)if(s=e.get("EXT_texture_compression_rgtc"),s!==null){if(i===Jl)return s.COMPRESSED_RED_RGTC1_EXT;if(i===Ql)return s.COMPRESSED_SIGNED_RED_RGTC1_EXT;if(i===xa)return s.COMPRESSED_RED_GREEN_RGTC2_EXT;if(i===jl)return s.COMPRESSED_SIGNED_RED_GREEN_RGTC2_EXT}else return null;return i===Er?n.UNSIGNED_INT_24_8:n[i]!==void 0?n[i]:null}return{convert:t}}const Ix=`
+void main() {
+
+	gl_Position = vec4( position, 1.0 );
+
+}`,Nx=`
+uniform sampler2DArray depthColor;
+uniform float depthWidth;
+uniform float depthHeight;
+
+void main() {
+
+	vec2 coord = vec2( gl_FragCoord.x / depthWidth, gl_FragCoord.y / depthHeight );
+
+	if ( coord.x >= 1.0 ) {
+
+		gl_FragDepth = texture( depthColor, vec3( coord.x - 1.0, coord.y, 1 ) ).r;
+
+	} else {
+
+		gl_FragDepth = texture( depthColor, vec3( coord.x, coord.y, 0 ) ).r;
+
+	}
+
+}`;class Ux{constructor(){this.texture=null,this.mesh=null,this.depthNear=0,this.depthFar=0}init(e,t){if(this.texture===null){const i=new _d(e.texture);(e.depthNear!==t.depthNear||e.depthFar!==t.depthFar)&&(this.depthNear=e.depthNear,this.depthFar=e.depthFar),this.texture=i}}getMesh(e){if(this.texture!==null&&this.mesh===null){const t=e.cameras[0].viewport,i=new Li({vertexShader:Ix,fragmentShader:Nx,uniforms:{depthColor:{value:this.texture},depthWidth:{value:t.z},depthHeight:{value:t.w}}});this.mesh=new hi(new Za(20,20),i)}return this.mesh}reset(){this.texture=null,this.mesh=null}getDepthTexture(){return this.texture}}class Fx extends Ji{constructor(e,t){super();const i=this;let r=null,s=1,a=null,o="local-floor",l=1,c=null,f=null,d=null,u=null,h=null,g=null;const x=typeof XRWebGLBinding<"u",m=new Ux,p={},v=t.getContextAttributes();let M=null,S=null;const b=[],w=[],_=new He;let y=null,I=null;const R=new gn;R.viewport=new at;const P=new gn;P.viewport=new at;const D=[R,P],O=new Ag;let L=null,k=null;this.cameraAutoUpdate=!0,this.enabled=!1,this.isPresenting=!1,this.getController=function(Z){let fe=b[Z];return fe===void 0&&(fe=new dc,b[Z]=fe),fe.getTargetRaySpace()},this.getControllerGrip=function(Z){let fe=b[Z];return fe===void 0&&(fe=new dc,b[Z]=fe),fe.getGripSpace()},this.getHand=function(Z){let fe=b[Z];return fe===void 0&&(fe=new dc,b[Z]=fe),fe.getHandSpace()};function V(Z){const fe=w.indexOf(Z.inputSource);if(fe===-1)return;const xe=b[fe];xe!==void 0&&(xe.update(Z.inputSource,Z.frame,c||a),xe.dispatchEvent({type:Z.type,data:Z.inputSource}))}function W(){r.removeEventListener("select",V),r.removeEventListener("selectstart",V),r.removeEventListener("selectend",V),r.removeEventListener("squeeze",V),r.removeEventListener("squeezestart",V),r.removeEventListener("squeezeend",V),r.removeEventListener("end",W),r.removeEventListener("inputsourceschange",te);for(let Z=0;Z<b.length;Z++){const fe=w[Z];fe!==null&&(w[Z]=null,b[Z].disconnect(fe))}L=null,k=null,m.reset();for(const Z in p)delete p[Z];if(e.setRenderTarget(M),h=null,u=null,d=null,r=null,S=null,De.stop(),i.isPresenting=!1,e.setPixelRatio(y),e.setSize(_.width,_.height,!1),I!==null){const Z=I.camera;Z.fov=I.fov,Z.zoom=I.zoom,Z.updateProjectionMatrix(),I=null}i.dispatchEvent({type:"sessionend"})}this.setFramebufferScaleFactor=function(Z){s=Z,i.isPresenting===!0&&Pe("WebXRManager: Cannot change framebuffer scale while presenting.")},this.setReferenceSpaceType=function(Z){o=Z,i.isPresenting===!0&&Pe("WebXRManager: Cannot change reference space type while presenting.")},this.getReferenceSpace=function(){return c||a},this.setReferenceSpace=function(Z){c=Z},this.getBaseLayer=function(){return u!==null?u:h},this.getBinding=function(){return d===null&&x&&(d=new XRWebGLBinding(r,t)),d},this.getFrame=function(){return g},this.getSession=function(){return r},this.setSession=async function(Z){if(r=Z,r!==null){if(M=e.getRenderTarget(),r.addEventListener("select",V),r.addEventListener("selectstart",V),r.addEventListener("selectend",V),r.addEventListener("squeeze",V),r.addEventListener("squeezestart",V),r.addEventListener("squeezeend",V),r.addEventListener("end",W),r.addEventListener("inputsourceschange",te),v.xrCompatible!==!0&&await t.makeXRCompatible(),y=e.getPixelRatio(),e.getSize(_),x&&"createProjectionLayer"in XRWebGLBinding.prototype){let xe=null,we=null,ge=null;v.depth&&(ge=v.stencil?t.DEPTH24_STENCIL8:t.DEPTH_COMPONENT24,xe=v.stencil?Ei:bi,we=v.stencil?Er:On);const Ie={colorFormat:t.RGBA8,depthFormat:ge,scaleFactor:s};d=this.getBinding(),u=d.createProjectionLayer(Ie),r.updateRenderState({layers:[u]}),e.setPixelRatio(1),e.setSize(u.textureWidth,u.textureHeight,!1),S=new Rn(u.textureWidth,u.textureHeight,{format:zn,type:hn,depthTexture:new Fr(u.textureWidth,u.textureHeight,we,void 0,void 0,void 0,void 0,void 0,void 0,xe),stencilBuffer:v.stencil,colorSpace:e.outputColorSpace,samples:v.antialias?4:0,resolveDepthBuffer:u.ignoreDepthValues===!1,resolveStencilBuffer:u.ignoreDepthValues===!1,storeMultisampledDepthBuffer:u.ignoreDepthValues===!1,storeMultisampledStencilBuffer:u.ignoreDepthValues===!1})}else{const xe={antialias:v.antialias,alpha:!0,depth:v.depth,stencil:v.stencil,framebufferScaleFactor:s};h=new XRWebGLLayer(r,t,xe),r.updateRenderState({baseLayer:h}),e.setPixelRatio(1),e.setSize(h.framebufferWidth,h.framebufferHeight,!1),S=new Rn(h.framebufferWidth,h.framebufferHeight,{format:zn,type:hn,colorSpace:e.outputColorSpace,stencilBuffer:v.stencil,resolveDepthBuffer:h.ignoreDepthValues===!1,resolveStencilBuffer:h.ignoreDepthValues===!1,storeMultisampledDepthBuffer:h.ignoreDepthValues===!1,storeMultisampledStencilBuffer:h.ignoreDepthValues===!1})}S.isXRRenderTarget=!0,this.setFoveation(l),c=null,a=await r.requestReferenceSpace(o),De.setContext(r),De.start(),i.isPresenting=!0,i.dispatchEvent({type:"sessionstart"})}},this.getEnvironmentBlendMode=function(){if(r!==null)return r.environmentBlendMode},this.getDepthTexture=function(){return m.getDepthTexture()};function te(Z){for(let fe=0;fe<Z.removed.length;fe++){const xe=Z.removed[fe],we=w.indexOf(xe);we>=0&&(w[we]=null,b[we].disconnect(xe))}for(let fe=0;fe<Z.added.length;fe++){const xe=Z.added[fe];let we=w.indexOf(xe);if(we===-1){for(let Ie=0;Ie<b.length;Ie++)if(Ie>=w.length){w.push(xe),we=Ie;break}else if(w[Ie]===null){w[Ie]=xe,we=Ie;break}if(we===-1)break}const ge=b[we];ge&&ge.connect(xe)}}function $(Z,fe){fe===null?Z.matrixWorld.copy(Z.matrix):Z.matrixWorld.multiplyMatrices(fe.matrixWorld,Z.matrix),Z.matrixWorldInverse.copy(Z.matrixWorld).invert()}this.updateCamera=function(Z){if(r===null)return;let fe=Z.near,xe=Z.far;m.texture!==null&&(m.depthNear>0&&(fe=m.depthNear),m.depthFar>0&&(xe=m.depthFar)),O.near=P.near=R.near=fe,O.far=P.far=R.far=xe,(L!==O.near||k!==O.far)&&(r.updateRenderState({depthNear:O.near,depthFar:O.far}),L=O.near,k=O.far),O.layers.mask=Z.layers.mask|6,R.layers.mask=O.layers.mask&-5,P.layers.mask=O.layers.mask&-3;const we=Z.parent,ge=O.cameras;$(O,we);for(let Ie=0;Ie<ge.length;Ie++)$(ge[Ie],we);O.projectionMatrix.copy(R.projectionMatrix),O.projectionMatrixInverse.copy(R.projectionMatrixInverse),I===null&&Z.isPerspectiveCamera&&(I={camera:Z,fov:Z.fov,zoom:Z.zoom}),j(Z,O,we)};function j(Z,fe,xe){xe===null?Z.matrix.copy(fe.matrixWorld):(Z.matrix.copy(xe.matrixWorld),Z.matrix.invert(),Z.matrix.multiply(fe.matrixWorld)),Z.matrix.decompose(Z.position,Z.quaternion,Z.scale),Z.updateMatrixWorld(!0),Z.projectionMatrix.copy(fe.projectionMatrix),Z.projectionMatrixInverse.copy(fe.projectionMatrixInverse),Z.isPerspectiveCamera&&(Z.fov=ic*2*Math.atan(1/Z.projectionMatrix.elements[5]),Z.zoom=1)}this.getCamera=function(){return O},this.getFoveation=function(){if(!(u===null&&h===null))return l},this.setFoveation=function(Z){l=Z,u!==null&&(u.fixedFoveation=Z),h!==null&&h.fixedFoveation!==void 0&&(h.fixedFoveation=Z)},this.hasDepthSensing=function(){return m.texture!==null},this.getDepthSensingMesh=function(){return m.getMesh(O)},this.getCameraTexture=function(Z){return p[Z]};let ee=null;function Se(Z,fe){if(f=fe.getViewerPose(c||a),g=fe,f!==null){const xe=f.views;h!==null&&(e.setRenderTargetFramebuffer(S,h.framebuffer),e.setRenderTarget(S));let we=!1;xe.length!==O.cameras.length&&(O.cameras.length=0,we=!0);for(let Re=0;Re<xe.length;Re++){const $e=xe[Re];let rt=null;if(h!==null)rt=h.getViewport($e);else{const Ht=d.getViewSubImage(u,$e);rt=Ht.viewport,Re===0&&(e.setRenderTargetTextures(S,Ht.colorTexture,Ht.depthStencilTexture),e.setRenderTarget(S))}let Ge=D[Re];Ge===void 0&&(Ge=new gn,Ge.layers.enable(Re),Ge.viewport=new at,D[Re]=Ge),Ge.matrix.fromArray($e.transform.matrix),Ge.matrix.decompose(Ge.position,Ge.quaternion,Ge.scale),Ge.projectionMatrix.fromArray($e.projectionMatrix),Ge.projectionMatrixInverse.copy(Ge.projectionMatrix).invert(),Ge.viewport.set(rt.x,rt.y,rt.width,rt.height),Re===0&&(O.matrix.copy(Ge.matrix),O.matrix.decompose(O.position,O.quaternion,O.scale)),we===!0&&O.cameras.push(Ge)}const ge=r.enabledFeatures;if(ge&&ge.includes("depth-sensing")&&r.depthUsage=="gpu-optimized"&&x){d=i.getBinding();const Re=d.getDepthInformation(xe[0]);Re&&Re.isValid&&Re.texture&&m.init(Re,r.renderState)}if(ge&&ge.includes("camera-access")&&x){e.state.unbindTexture(),d=i.getBinding();for(let Re=0;Re<xe.length;Re++){const $e=xe[Re].camera;if($e){let rt=p[$e];rt||(rt=new _d,p[$e]=rt);const Ge=d.getCameraImage($e);rt.sourceTexture=Ge}}}}for(let xe=0;xe<b.length;xe++){const we=w[xe],ge=b[xe];we!==null&&ge!==void 0&&ge.update(we,fe,c||a)}ee&&ee(Z,fe),fe.detectedPlanes&&i.dispatchEvent({type:"planesdetected",data:fe}),g=null}const De=new Td;De.setAnimationLoop(Se),this.setAnimationLoop=function(Z){ee=Z},this.dispose=function(){}}}const Ox=new je,nh=new Fe;nh.set(-1,0,0,0,1,0,0,0,1);function Bx(n,e){function t(m,p){m.matrixAutoUpdate===!0&&m.updateMatrix(),p.value.copy(m.matrix)}function i(m,p){p.color.getRGB(m.fogColor.value,xd(n)),p.isFog?(m.fogNear.value=p.near,m.fogFar.value=p.far):p.isFogExp2&&(m.fogDensity.value=p.density)}function r(m,p,v,M,S){p.isNodeMaterial?p.uniformsNeedUpdate=!1:p.isMeshBasicMaterial?s(m,p):p.isMeshLambertMaterial?(s(m,p),p.envMap&&(m.envMapIntensity.value=p.envMapIntensity)):p.isMeshToonMaterial?(s(m,p),d(m,p)):p.isMeshPhongMaterial?(s(m,p),f(m,p),p.envMap&&(m.envMapIntensity.value=p.envMapIntensity)):p.isMeshStandardMaterial?(s(m,p),u(m,p),p.isMeshPhysicalMaterial&&h(m,p,S)):p.isMeshMatcapMaterial?(s(m,p),g(m,p)):p.isMeshDepthMaterial?s(m,p):p.isMeshDistanceMaterial?(s(m,p),x(m,p)):p.isMeshNormalMaterial?s(m,p):p.isLineBasicMaterial?(a(m,p),p.isLineDashedMaterial&&o(m,p)):p.isPointsMaterial?l(m,p,v,M):p.isSpriteMaterial?c(m,p):p.isShadowMaterial?(m.color.value.copy(p.color),m.opacity.value=p.opacity):p.isShaderMaterial&&(p.uniformsNeedUpdate=!1)}function s(m,p){m.opacity.value=p.opacity,p.color&&m.diffuse.value.copy(p.color),p.emissive&&m.emissive.value.copy(p.emissive).multiplyScalar(p.emissiveIntensity),p.map&&(m.map.value=p.map,t(p.map,m.mapTransform)),p.alphaMap&&(m.alphaMap.value=p.alphaMap,t(p.alphaMap,m.alphaMapTransform)),p.bumpMap&&(m.bumpMap.value=p.bumpMap,t(p.bumpMap,m.bumpMapTransform),m.bumpScale.value=p.bumpScale,p.side===Kt&&(m.bumpScale.value*=-1)),p.normalMap&&(m.normalMap.value=p.normalMap,t(p.normalMap,m.normalMapTransform),m.normalScale.value.copy(p.normalScale),p.side===Kt&&m.normalScale.value.negate()),p.displacementMap&&(m.displacementMap.value=p.displacementMap,t(p.displacementMap,m.displacementMapTransform),m.displacementScale.value=p.displacementScale,m.displacementBias.value=p.displacementBias),p.emissiveMap&&(m.emissiveMap.value=p.emissiveMap,t(p.emissiveMap,m.emissiveMapTransform)),p.specularMap&&(m.specularMap.value=p.specularMap,t(p.specularMap,m.specularMapTransform)),p.alphaTest>0&&(m.alphaTest.value=p.alphaTest);const v=e.get(p),M=v.envMap,S=v.envMapRotation;M&&(m.envMap.value=M,m.envMapRotation.value.setFromMatrix4(Ox.makeRotationFromEuler(S)).transpose(),M.isCubeTexture&&M.isRenderTargetTexture===!1&&m.envMapRotation.value.premultiply(nh),m.reflectivity.value=p.reflectivity,m.ior.value=p.ior,m.refractionRatio.value=p.refractionRatio),p.lightMap&&(m.lightMap.value=p.lightMap,m.lightMapIntensity.value=p.lightMapIntensity,t(p.lightMap,m.lightMapTransform)),p.aoMap&&(m.aoMap.value=p.aoMap,m.aoMapIntensity.value=p.aoMapIntensity,t(p.aoMap,m.aoMapTransform))}function a(m,p){m.diffuse.value.copy(p.color),m.opacity.value=p.opacity,p.map&&(m.map.value=p.map,t(p.map,m.mapTransform))}function o(m,p){m.dashSize.value=p.dashSize,m.totalSize.value=p.dashSize+p.gapSize,m.scale.value=p.scale}function l(m,p,v,M){m.diffuse.value.copy(p.color),m.opacity.value=p.opacity,m.size.value=p.size*v,m.scale.value=M*.5,p.map&&(m.map.value=p.map,t(p.map,m.uvTransform)),p.alphaMap&&(m.alphaMap.value=p.alphaMap,t(p.alphaMap,m.alphaMapTransform)),p.alphaTest>0&&(m.alphaTest.value=p.alphaTest)}function c(m,p){m.diffuse.value.copy(p.color),m.opacity.value=p.opacity,m.rotation.value=p.rotation,p.map&&(m.map.value=p.map,t(p.map,m.mapTransform)),p.alphaMap&&(m.alphaMap.value=p.alphaMap,t(p.alphaMap,m.alphaMapTransform)),p.alphaTest>0&&(m.alphaTest.value=p.alphaTest)}function f(m,p){m.specular.value.copy(p.specular),m.shininess.value=Math.max(p.shininess,1e-4)}function d(m,p){p.gradientMap&&(m.gradientMap.value=p.gradientMap)}function u(m,p){m.metalness.value=p.metalness,p.metalnessMap&&(m.metalnessMap.value=p.metalnessMap,t(p.metalnessMap,m.metalnessMapTransform)),m.roughness.value=p.roughness,p.roughnessMap&&(m.roughnessMap.value=p.roughnessMap,t(p.roughnessMap,m.roughnessMapTransform)),p.envMap&&(m.envMapIntensity.value=p.envMapIntensity)}function h(m,p,v){m.ior.value=p.ior,p.diffuseRoughness>0&&(m.diffuseRoughness.value=p.diffuseRoughness,p.diffuseRoughnessMap&&(m.diffuseRoughnessMap.value=p.diffuseRoughnessMap,t(p.diffuseRoughnessMap,m.diffuseRoughnessMapTransform))),p.sheen>0&&(m.sheenColor.value.copy(p.sheenColor).multiplyScalar(p.sheen),m.sheenRoughness.value=p.sheenRoughness,p.sheenColorMap&&(m.sheenColorMap.value=p.sheenColorMap,t(p.sheenColorMap,m.sheenColorMapTransform)),p.sheenRoughnessMap&&(m.sheenRoughnessMap.value=p.sheenRoughnessMap,t(p.sheenRoughnessMap,m.sheenRoughnessMapTransform))),p.clearcoat>0&&(m.clearcoat.value=p.clearcoat,m.clearcoatRoughness.value=p.clearcoatRoughness,p.clearcoatMap&&(m.clearcoatMap.value=p.clearcoatMap,t(p.clearcoatMap,m.clearcoatMapTransform)),p.clearcoatRoughnessMap&&(m.clearcoatRoughnessMap.value=p.clearcoatRoughnessMap,t(p.clearcoatRoughnessMap,m.clearcoatRoughnessMapTransform)),p.clearcoatNormalMap&&(m.clearcoatNormalMap.value=p.clearcoatNormalMap,t(p.clearcoatNormalMap,m.clearcoatNormalMapTransform),m.clearcoatNormalScale.value.copy(p.clearcoatNormalScale),p.side===Kt&&m.clearcoatNormalScale.value.negate())),p.dispersion>0&&(m.dispersion.value=p.dispersion),p.retroreflectivity>0&&(m.retroreflectivity.value=p.retroreflectivity),p.iridescence>0&&(m.iridescence.value=p.iridescence,m.iridescenceIOR.value=p.iridescenceIOR,m.iridescenceThicknessMinimum.value=p.iridescenceThicknessMinimum,m.iridescenceThicknessMaximum.value=p.iridescenceThicknessMaximum,p.iridescenceMap&&(m.iridescenceMap.value=p.iridescenceMap,t(p.iridescenceMap,m.iridescenceMapTransform)),p.iridescenceThicknessMap&&(m.iridescenceThicknessMap.value=p.iridescenceThicknessMap,t(p.iridescenceThicknessMap,m.iridescenceThicknessMapTransform))),p.transmission>0&&(m.transmission.value=p.transmission,m.transmissionSamplerMap.value=v.texture,m.transmissionSamplerSize.value.set(v.width,v.height),p.transmissionMap&&(m.transmissionMap.value=p.transmissionMap,t(p.transmissionMap,m.transmissionMapTransform)),m.thickness.value=p.thickness,p.thicknessMap&&(m.thicknessMap.value=p.thicknessMap,t(p.thicknessMap,m.thicknessMapTransform)),m.attenuationDistance.value=p.attenuationDistance,m.attenuationColor.value.copy(p.attenuationColor)),p.anisotropy>0&&(m.anisotropyVector.value.set(p.anisotropy*Math.cos(p.anisotropyRotation),p.anisotropy*Math.sin(p.anisotropyRotation)),p.anisotropyMap&&(m.anisotropyMap.value=p.anisotropyMap,t(p.anisotropyMap,m.anisotropyMapTransform))),m.specularIntensity.value=p.specularIntensity,m.specularColor.value.copy(p.specularColor),p.specularColorMap&&(m.specularColorMap.value=p.specularColorMap,t(p.specularColorMap,m.specularColorMapTransform)),p.specularIntensityMap&&(m.specularIntensityMap.value=p.specularIntensityMap,t(p.specularIntensityMap,m.specularIntensityMapTransform))}function g(m,p){p.matcap&&(m.matcap.value=p.matcap)}function x(m,p){const v=e.get(p).light;m.referencePosition.value.setFromMatrixPosition(v.matrixWorld),m.nearDistance.value=v.shadow.camera.near,m.farDistance.value=v.shadow.camera.far}return{refreshFogUniforms:i,refreshMaterialUniforms:r}}function kx(n,e,t,i){let r={},s={};function a(v,M){const S=M.program;i.uniformBlockBinding(v,S,r[v.id])}function o(v,M){let S=r[v.id];S===void 0&&(g(v),S=l(v),r[v.id]=S,v.addEventListener("dispose",m));const b=M.program;i.updateUBOMapping(v,b);const w=e.render.frame;s[v.id]!==w&&(c(v),s[v.id]=w)}function l(v){const M=n.createBuffer(),S=v.__size,b=v.usage;return n.bindBuffer(n.UNIFORM_BUFFER,M),n.bufferData(n.UNIFORM_BUFFER,S,b),n.bindBuffer(n.UNIFORM_BUFFER,null),M}function c(v){const M=r[v.id],S=v.uniforms,b=v.__cache;n.bindBuffer(n.UNIFORM_BUFFER,M);for(let w=0,_=S.length;w<_;w++){const y=S[w];if(Array.isArray(y))for(let I=0,R=y.length;I<R;I++)f(y[I],w,I,b);else f(y,w,0,b)}n.bindBuffer(n.UNIFORM_BUFFER,null)}function f(v,M,S,b){if(u(v,M,S,b)===!0){const w=v.__offset,_=v.value;if(Array.isArray(_)){let y=0;for(let I=0;I<_.length;I++){const R=_[I],P=x(R,!0);d(R,v.__data,y),y+=P.storage/Float32Array.BYTES_PER_ELEMENT}}else d(_,v.__data,0);n.bufferSubData(n.UNIFORM_BUFFER,w,v.__data)}}function d(v,M,S){typeof v=="number"||typeof v=="boolean"?M[S]=v:v.isMatrix3?(M[S]=v.elements[0],M[S+1]=v.elements[1],M[S+2]=v.elements[2],M[S+3]=0,M[S+4]=v.elements[3],M[S+5]=v.elements[4],M[S+6]=v.elements[5],M[S+7]=0,M[S+8]=v.elements[6],M[S+9]=v.elements[7],M[S+10]=v.elements[8],M[S+11]=0):ArrayBuffer.isView(v)?M.set(v.subarray(0,M.length-S),S):v.toArray(M,S)}function u(v,M,S,b){const w=v.value,_=M+"_"+S;if(Array.isArray(w)){b[_]===void 0&&(b[_]=[]);const y=b[_];let I=!1;for(let R=0;R<w.length;R++)h(w[R],y,R)===!0&&(I=!0);return I}return h(w,b,_)}function h(v,M,S){if(M[S]===void 0)return typeof v=="number"||typeof v=="boolean"?M[S]=v:ArrayBuffer.isView(v)?M[S]=v.slice():M[S]=v.clone(),!0;{const b=M[S];if(typeof v=="number"||typeof v=="boolean"){if(b!==v)return M[S]=v,!0}else{if(ArrayBuffer.isView(v))return!0;if(b.equals(v)===!1)return b.copy(v),!0}}return!1}function g(v){const M=v.uniforms;let S=0;const b=16;for(let _=0,y=M.length;_<y;_++){const I=Array.isArray(M[_])?M[_]:[M[_]];for(let R=0,P=I.length;R<P;R++){const D=I[R],O=Array.isArray(D.value)?D.value:[D.value],L=Array.isArray(M[_])||Array.isArray(D.value);let k=S;for(let W=0,te=O.length;W<te;W++){const $=O[W],j=x($,L),ee=S%b,Se=ee%j.boundary,De=ee+Se;S+=Se,De!==0&&b-De<j.storage&&(S+=b-De),W===0&&(k=S),S+=j.storage}const V=D.type==="int"?Int32Array:D.type==="uint"?Uint32Array:Float32Array;D.__data=new V((S-k)/Float32Array.BYTES_PER_ELEMENT),D.__offset=k}}const w=S%b;return w>0&&(S+=b-w),v.__size=S,v.__cache={},this}function x(v,M){const S={boundary:0,storage:0};return typeof v=="number"||typeof v=="boolean"?(S.boundary=4,S.storage=4):v.isVector2?(S.boundary=8,S.storage=8):v.isVector3||v.isColor?(S.boundary=16,S.storage=12):v.isVector4?(S.boundary=16,S.storage=16):v.isMatrix3?(S.boundary=16,S.storage=48):v.isMatrix4?(S.boundary=16,S.storage=64):v.isTexture?Pe("WebGLRenderer: Texture samplers can not be part of an uniforms group."):ArrayBuffer.isView(v)?(S.boundary=16,S.storage=v.byteLength):Pe("WebGLRenderer: Unsupported uniform value type.",v),M===!0&&(S.boundary=16,S.storage=Math.ceil(S.storage/16)*16),S}function m(v){const M=v.target;M.removeEventListener("dispose",m),n.deleteBuffer(r[M.id]),delete r[M.id],delete s[M.id]}function p(){for(const v in r)n.deleteBuffer(r[v]);r={},s={}}return{bind:a,update:o,dispose:p}}const zx=new Uint16Array([12469,15057,12620,14925,13266,14620,13807,14376,14323,13990,14545,13625,14713,13328,14840,12882,14931,12528,14996,12233,15039,11829,15066,11525,15080,11295,15085,10976,15082,10705,15073,10495,13880,14564,13898,14542,13977,14430,14158,14124,14393,13732,14556,13410,14702,12996,14814,12596,14891,12291,14937,11834,14957,11489,14958,11194,14943,10803,14921,10506,14893,10278,14858,9960,14484,14039,14487,14025,14499,13941,14524,13740,14574,13468,14654,13106,14743,12678,14818,12344,14867,11893,14889,11509,14893,11180,14881,10751,14852,10428,14812,10128,14765,9754,14712,9466,14764,13480,14764,13475,14766,13440,14766,13347,14769,13070,14786,12713,14816,12387,14844,11957,14860,11549,14868,11215,14855,10751,14825,10403,14782,10044,14729,9651,14666,9352,14599,9029,14967,12835,14966,12831,14963,12804,14954,12723,14936,12564,14917,12347,14900,11958,14886,11569,14878,11247,14859,10765,14828,10401,14784,10011,14727,9600,14660,9289,14586,8893,14508,8533,15111,12234,15110,12234,15104,12216,15092,12156,15067,12010,15028,11776,14981,11500,14942,11205,14902,10752,14861,10393,14812,9991,14752,9570,14682,9252,14603,8808,14519,8445,14431,8145,15209,11449,15208,11451,15202,11451,15190,11438,15163,11384,15117,11274,15055,10979,14994,10648,14932,10343,14871,9936,14803,9532,14729,9218,14645,8742,14556,8381,14461,8020,14365,7603,15273,10603,15272,10607,15267,10619,15256,10631,15231,10614,15182,10535,15118,10389,15042,10167,14963,9787,14883,9447,14800,9115,14710,8665,14615,8318,14514,7911,14411,7507,14279,7198,15314,9675,15313,9683,15309,9712,15298,9759,15277,9797,15229,9773,15166,9668,15084,9487,14995,9274,14898,8910,14800,8539,14697,8234,14590,7790,14479,7409,14367,7067,14178,6621,15337,8619,15337,8631,15333,8677,15325,8769,15305,8871,15264,8940,15202,8909,15119,8775,15022,8565,14916,8328,14804,8009,14688,7614,14569,7287,14448,6888,14321,6483,14088,6171,15350,7402,15350,7419,15347,7480,15340,7613,15322,7804,15287,7973,15229,8057,15148,8012,15046,7846,14933,7611,14810,7357,14682,7069,14552,6656,14421,6316,14251,5948,14007,5528,15356,5942,15356,5977,15353,6119,15348,6294,15332,6551,15302,6824,15249,7044,15171,7122,15070,7050,14949,6861,14818,6611,14679,6349,14538,6067,14398,5651,14189,5311,13935,4958,15359,4123,15359,4153,15356,4296,15353,4646,15338,5160,15311,5508,15263,5829,15188,6042,15088,6094,14966,6001,14826,5796,14678,5543,14527,5287,14377,4985,14133,4586,13869,4257,15360,1563,15360,1642,15358,2076,15354,2636,15341,3350,15317,4019,15273,4429,15203,4732,15105,4911,14981,4932,14836,4818,14679,4621,14517,4386,14359,4156,14083,3795,13808,3437,15360,122,15360,137,15358,285,15355,636,15344,1274,15322,2177,15281,2765,15215,3223,15120,3451,14995,3569,14846,3567,14681,3466,14511,3305,14344,3121,14037,2800,13753,2467,15360,0,15360,1,15359,21,15355,89,15346,253,15325,479,15287,796,15225,1148,15133,1492,15008,1749,14856,1882,14685,1886,14506,1783,14324,1608,13996,1398,13702,1183]);let Xn=null;function Hx(){return Xn===null&&(Xn=new pg(zx,16,16,Zi,kn),Xn.name="DFG_LUT",Xn.minFilter=tn,Xn.magFilter=tn,Xn.wrapS=ai,Xn.wrapT=ai,Xn.generateMipmaps=!1,Xn.needsUpdate=!0),Xn}class ih{constructor(e={}){const{canvas:t=zm(),context:i=null,depth:r=!0,stencil:s=!1,alpha:a=!1,antialias:o=!1,premultipliedAlpha:l=!0,preserveDrawingBuffer:c=!1,powerPreference:f="default",failIfMajorPerformanceCaveat:d=!1,reversedDepthBuffer:u=!1,outputBufferType:h=hn}=e;this.isWebGLRenderer=!0;let g;if(i!==null){if(typeof WebGLRenderingContext<"u"&&i instanceof WebGLRenderingContext)throw new Error("THREE.WebGLRenderer: WebGL 1 is not supported since r163.");g=i.getContextAttributes().alpha}else g=a;const x=h,m=new Set([bl,yl,Ml]),p=new Set([hn,On,As,Er,xl,Sl]),v=new Uint32Array(4),M=new Int32Array(4),S={textures:[],min:[],max:[],resolution:[]};let b=null,w=null;const _=[],y=[];let I=null;this.domElement=t,this.debug={checkShaderErrors:!0,diagnostics:{keywords:!1},onShaderError:null},this.autoClear=!0,this.autoClearColor=!0,this.autoClearDepth=!0,this.autoClearStencil=!0,this.sortObjects=!0,this.clippingPlanes=[],this.localClippingEnabled=!1,this.toneMapping=si,this.toneMappingExposure=1,this.transmissionResolutionScale=1;const R=this;let P=!1,D=null,O=null,L=null,k=null;this._outputColorSpace=pn;let V=0,W=0,te=null,$=-1,j=null;const ee=new at,Se=new at;let De=null;const Z=new Ye(0);let fe=0,xe=t.width,we=t.height,ge=1,Ie=null,mt=null;const Re=new at(0,0,xe,we),$e=new at(0,0,xe,we);let rt=!1;const Ge=new Xa,Ht=new wc;let Ct=!1,sn=!1;const dt=new je,jn=new N,It=new at,yn={background:null,fog:null,environment:null,overrideMaterial:null,isScene:!0};let bn=!1;function En(){return te===null?ge:1}let B=i;function Tn(T,F){return t.getContext(T,F)}let ut,ft,pe,Pt,Ce,Ne,C,E,H,ne,Q,ae,de,Y,K,le,U,J,q,ce,se,oe,Te;try{const T={alpha:!0,depth:r,stencil:s,antialias:o,premultipliedAlpha:l,preserveDrawingBuffer:c,powerPreference:f,failIfMajorPerformanceCaveat:d};if("setAttribute"in t&&t.setAttribute("data-engine",`three.js r${Ms}`),t.addEventListener("webglcontextlost",Ae,!1),t.addEventListener("webglcontextrestored",Be,!1),t.addEventListener("webglcontextcreationerror",_e,!1),B===null){const F="webgl2";if(B=Tn(F,T),B===null)throw Tn(F)?new Error("THREE.WebGLRenderer: Error creating WebGL context with your selected attributes."):new Error("THREE.WebGLRenderer: Error creating WebGL context.")}ze()}catch(T){throw t.removeEventListener("webglcontextlost",Ae,!1),t.removeEventListener("webglcontextrestored",Be,!1),t.removeEventListener("webglcontextcreationerror",_e,!1),Ke("WebGLRenderer: "+T.message),T}function ze(){ut=new X0(B),ut.init(),se=new Dx(B,ut),ft=new N0(B,ut,e,se),pe=new Px(B,ut),ft.reversedDepthBuffer&&u&&pe.buffers.depth.setReversed(!0),O=B.createFramebuffer(),L=B.createFramebuffer(),k=B.createFramebuffer(),Pt=new Y0(B),Ce=new gx,Ne=new Lx(B,ut,pe,Ce,ft,se,Pt),C=new W0(R),E=new Pg(B),oe=new D0(B,E),H=new $0(B,E,Pt,oe),ne=new Z0(B,H,E,oe,Pt),J=new K0(B,ft,Ne),K=new U0(Ce),Q=new mx(R,C,ut,ft,oe,K),ae=new Bx(R,Ce),de=new vx,Y=new Ex(ut),U=new L0(R,C,pe,ne,g,l),le=new Cx(R,ne,ft),Te=new kx(B,Pt,ft,pe),q=new I0(B,ut,Pt),ce=new q0(B,ut,Pt),Pt.programs=Q.programs,R.capabilities=ft,R.extensions=ut,R.properties=Ce,R.renderLists=de,R.shadowMap=le,R.state=pe,R.info=Pt}x!==hn&&(I=new Q0(x,t.width,t.height,o,r,s));const re=new Fx(R,B);this.xr=re,this.getContext=function(){return B},this.getContextAttributes=function(){return B.getContextAttributes()},this.forceContextLoss=function(){const T=ut.get("WEBGL_lose_context");T&&T.loseContext()},this.forceContextRestore=function(){const T=ut.get("WEBGL_lose_context");T&&T.restoreContext()},this.getPixelRatio=function(){return ge},this.setPixelRatio=function(T){T!==void 0&&(ge=T,this.setSize(xe,we,!1))},this.getSize=function(T){return T.set(xe,we)},this.setSize=function(T,F,X=!0){if(re.isPresenting){Pe("WebGLRenderer: Can't change size while VR device is presenting.");return}xe=T,we=F,t.width=Math.floor(T*ge),t.height=Math.floor(F*ge),X===!0&&(t.style.width=T+"px",t.style.height=F+"px"),I!==null&&I.setSize(t.width,t.height),this.setViewport(0,0,T,F)},this.getDrawingBufferSize=function(T){return T.set(xe*ge,we*ge).floor()},this.setDrawingBufferSize=function(T,F,X){xe=T,we=F,ge=X,t.width=Math.floor(T*X),t.height=Math.floor(F*X),this.setViewport(0,0,T,F)},this.setEffects=function(T){if(x===hn){Ke("WebGLRenderer: setEffects() requires outputBufferType set to HalfFloatType or FloatType.");return}if(T){for(let F=0;F<T.length;F++)if(T[F].isOutputPass===!0){Pe("WebGLRenderer: OutputPass is not needed in setEffects(). Tone mapping and color space conversion are applied automatically.");break}}I.setEffects(T||[])},this.getCurrentViewport=function(T){return T.copy(ee)},this.getViewport=function(T){return T.copy(Re)},this.setViewport=function(T,F,X,z){T.isVector4?Re.set(T.x,T.y,T.z,T.w):Re.set(T,F,X,z),pe.viewport(ee.copy(Re).multiplyScalar(En()).round())},this.getScissor=function(T){return T.copy($e)},this.setScissor=function(T,F,X,z){T.isVector4?$e.set(T.x,T.y,T.z,T.w):$e.set(T,F,X,z),pe.scissor(Se.copy($e).multiplyScalar(En()).round())},this.getScissorTest=function(){return rt},this.setScissorTest=function(T){pe.setScissorTest(rt=T)},this.setOpaqueSort=function(T){Ie=T},this.setTransparentSort=function(T){mt=T},this.getClearColor=function(T){return T.copy(U.getClearColor())},this.setClearColor=function(){U.setClearColor(...arguments)},this.getClearAlpha=function(){return U.getClearAlpha()},this.setClearAlpha=function(){U.setClearAlpha(...arguments)},this.clear=function(T=!0,F=!0,X=!0){let z=0;if(T){let G=!1;if(te!==null){const he=te.texture.format;G=m.has(he)}if(G){const he=te.texture.type,Me=p.has(he),ue=U.getClearColor(),ve=U.getClearAlpha(),Ee=ue.r,Ue=ue.g,Ve=ue.b;Me?(v[0]=Ee,v[1]=Ue,v[2]=Ve,v[3]=ve,B.clearBufferuiv(B.COLOR,0,v)):(M[0]=Ee,M[1]=Ue,M[2]=Ve,M[3]=ve,B.clearBufferiv(B.COLOR,0,M))}else z|=B.COLOR_BUFFER_BIT}F&&(z|=B.DEPTH_BUFFER_BIT,this.state.buffers.depth.setMask(!0)),X&&(z|=B.STENCIL_BUFFER_BIT,this.state.buffers.stencil.setMask(4294967295)),z!==0&&B.clear(z)},this.clearColor=function(){this.clear(!0,!1,!1)},this.clearDepth=function(){this.clear(!1,!0,!1)},this.clearStencil=function(){this.clear(!1,!1,!0)},this.setNodesHandler=function(T){T.setRenderer(this),D=T},this.dispose=function(){t.removeEventListener("webglcontextlost",Ae,!1),t.removeEventListener("webglcontextrestored",Be,!1),t.removeEventListener("webglcontextcreationerror",_e,!1),U.dispose(),de.dispose(),Y.dispose(),Ne.dispose(),Ce.dispose(),C.dispose(),ne.dispose(),H.dispose(),oe.dispose(),Te.dispose(),Q.dispose(),re.dispose(),re.removeEventListener("sessionstart",lp),re.removeEventListener("sessionend",cp),mr.stop()};function Ae(T){T.preventDefault(),Hf("WebGLRenderer: Context Lost."),P=!0}function Be(){Hf("WebGLRenderer: Context Restored."),P=!1;const T=Pt.autoReset,F=le.enabled,X=le.autoUpdate,z=le.needsUpdate,G=le.type;ze(),Pt.autoReset=T,le.enabled=F,le.autoUpdate=X,le.needsUpdate=z,le.type=G}function _e(T){Ke("WebGLRenderer: A WebGL context could not be created. Reason: ",T.statusMessage)}function nt(T){const F=T.target;F.removeEventListener("dispose",nt),Nt(F)}function Nt(T){Xi(T),Ce.remove(T)}function Xi(T){const F=Ce.get(T).programs;F!==void 0&&(F.forEach(function(X){Q.releaseProgram(X)}),T.isShaderMaterial&&Q.releaseShaderCache(T))}this.renderBufferDirect=function(T,F,X,z,G,he){F===null&&(F=yn);const Me=G.isMesh&&G.matrixWorld.determinantAffine()<0,ue=Ay(T,F,X,z,G);pe.setMaterial(z,Me);let ve=X.index,Ee=1;if(z.wireframe===!0){if(ve=H.getWireframeAttribute(X),ve===void 0)return;Ee=2}const Ue=X.drawRange,Ve=X.attributes.position;let ye=Ue.start*Ee,We=(Ue.start+Ue.count)*Ee;he!==null&&(ye=Math.max(ye,he.start*Ee),We=Math.min(We,(he.start+he.count)*Ee)),ve!==null?(ye=Math.max(ye,0),We=Math.min(We,ve.count)):Ve!=null&&(ye=Math.max(ye,0),We=Math.min(We,Ve.count));const yt=We-ye;if(yt<0||yt===1/0)return;oe.setup(G,z,ue,X,ve);let ot,st=q;if(ve!==null&&(ot=E.get(ve),st=ce,st.setIndex(ot)),G.isMesh)z.wireframe===!0?(pe.setLineWidth(z.wireframeLinewidth*En()),st.setMode(B.LINES)):st.setMode(B.TRIANGLES);else if(G.isLine){let $t=z.linewidth;$t===void 0&&($t=1),pe.setLineWidth($t*En()),G.isLineSegments?st.setMode(B.LINES):G.isLineLoop?st.setMode(B.LINE_LOOP):st.setMode(B.LINE_STRIP)}else G.isPoints?st.setMode(B.POINTS):G.isSprite&&st.setMode(B.TRIANGLES);if(G.isBatchedMesh)if(ut.get("WEBGL_multi_draw"))st.renderMultiDraw(G._multiDrawStarts,G._multiDrawCounts,G._multiDrawCount);else{const $t=G._multiDrawStarts,be=G._multiDrawCounts,en=G._multiDrawCount,Je=ve?E.get(ve).bytesPerElement:1,gr=Ce.get(z).currentProgram.getUniforms();for(let qt=0;qt<en;qt++)gr.setValue(B,"_gl_DrawID",qt),st.render($t[qt]/Je,be[qt])}else if(G.isInstancedMesh)st.renderInstances(ye,yt,G.count);else if(X.isInstancedBufferGeometry){const $t=X._maxInstanceCount!==void 0?X._maxInstanceCount:1/0,be=Math.min(X.instanceCount,$t);st.renderInstances(ye,yt,be)}else st.render(ye,yt)};function op(T,F,X,z){D!==null&&T.isNodeMaterial&&D.setObject(z,T),Ct===!0&&K.setState(T,X,!1),T.transparent===!0&&T.side===an&&T.forceSinglePass===!1?(T.side=Kt,T.needsUpdate=!0,Ks(T,F,z),T.side=ri,T.needsUpdate=!0,Ks(T,F,z),T.side=an):Ks(T,F,z)}this.compile=function(T,F,X=null){X===null&&(X=T),D!==null&&D.renderStart(T,F,X),w=Y.get(X),w.init(F),y.push(w),X.traverseVisible(function(G){G.isLight&&G.layers.test(F.layers)&&(w.pushLight(G),G.castShadow&&w.pushShadow(G))}),T!==X&&T.traverseVisible(function(G){G.isLight&&G.layers.test(F.layers)&&(w.pushLight(G),G.castShadow&&w.pushShadow(G))}),w.setupLights(),D!==null&&D.updateLights(w.state.lightsArray),sn=this.localClippingEnabled,Ct=K.init(this.clippingPlanes,sn),Ct===!0&&K.setGlobalState(this.clippingPlanes,F),D!==null&&le.render(w.state.shadowsArray,X,F);const z=new Set;return T.traverse(function(G){if(!(G.isMesh||G.isPoints||G.isLine||G.isSprite))return;const he=G.material;if(he)if(Array.isArray(he))for(let Me=0;Me<he.length;Me++){const ue=he[Me];op(ue,X,F,G),z.add(ue)}else op(he,X,F,G),z.add(he)}),w=y.pop(),D!==null&&D.renderEnd(),z},this.compileAsync=function(T,F,X=null){const z=this.compile(T,F,X);return new Promise(G=>{function he(){if(z.forEach(function(Me){const ve=Ce.get(Me).currentProgram;(ve===void 0||ve.isReady())&&z.delete(Me)}),z.size===0){G(T);return}setTimeout(he,10)}ut.get("KHR_parallel_shader_compile")!==null?he():setTimeout(he,10)})};let Tu=null;function Ey(T){Tu&&Tu(T)}function lp(){mr.stop()}function cp(){mr.start()}const mr=new Td;mr.setAnimationLoop(Ey),typeof self<"u"&&mr.setContext(self),this.setAnimationLoop=function(T){Tu=T,re.setAnimationLoop(T),T===null?mr.stop():mr.start()},re.addEventListener("sessionstart",lp),re.addEventListener("sessionend",cp),this.render=function(T,F){if(F!==void 0&&F.isCamera!==!0){Ke("WebGLRenderer.render: camera is not an instance of THREE.Camera.");return}if(P===!0)return;D!==null&&D.renderStart(T,F);const X=re.enabled===!0&&re.isPresenting===!0,z=I!==null&&(te===null||X)&&I.begin(R,te);if(T.matrixWorldAutoUpdate===!0&&T.updateMatrixWorld(),F.parent===null&&F.matrixWorldAutoUpdate===!0&&F.updateMatrixWorld(),re.enabled===!0&&re.isPresenting===!0&&(I===null||I.isCompositing()===!1)&&(re.cameraAutoUpdate===!0&&re.updateCamera(F),F=re.getCamera()),T.isScene===!0&&T.onBeforeRender(R,T,F,te),w=Y.get(T,y.length),w.init(F),w.state.textureUnits=Ne.getTextureUnits(),y.push(w),dt.multiplyMatrices(F.projectionMatrix,F.matrixWorldInverse),F.isArrayCamera?Ht.setFromArrayCamera(F):Ge.setFromProjectionMatrix(dt,wn,F.reversedDepth),sn=this.localClippingEnabled,Ct=K.init(this.clippingPlanes,sn),b=de.get(T,_.length),b.init(),_.push(b),this.info.render.frame++,re.enabled===!0&&re.isPresenting===!0){const Me=R.xr.getDepthSensingMesh();Me!==null&&Au(Me,F,-1/0,R.sortObjects)}Au(T,F,0,R.sortObjects),b.finish(),D!==null&&D.updateLights(w.state.lightsArray),R.sortObjects===!0&&b.sort(Ie,mt),bn=re.enabled===!1||re.isPresenting===!1||re.hasDepthSensing()===!1,bn&&U.addToRenderList(b,T),this.info.autoReset===!0&&this.info.reset(),Ct===!0&&K.beginShadows();const G=w.state.shadowsArray;if(le.render(G,T,F),Ct===!0&&K.endShadows(),(z&&I.hasRenderPass())===!1){const Me=b.opaque,ue=b.transmissive;if(w.setupLights(),F.isArrayCamera){const ve=F.cameras;if(ue.length>0)for(let Ee=0,Ue=ve.length;Ee<Ue;Ee++){const Ve=ve[Ee];fp(Me,ue,T,Ve)}bn&&U.render(T);for(let Ee=0,Ue=ve.length;Ee<Ue;Ee++){const Ve=ve[Ee];up(b,T,Ve,Ve.viewport)}}else ue.length>0&&fp(Me,ue,T,F),bn&&U.render(T),up(b,T,F)}te!==null&&W===0&&(Ne.updateMultisampleRenderTarget(te),Ne.updateRenderTargetMipmap(te)),z&&I.end(R),T.isScene===!0&&T.onAfterRender(R,T,F),oe.resetDefaultState(),$=-1,j=null,y.pop(),y.length>0?(w=y[y.length-1],Ne.setTextureUnits(w.state.textureUnits),Ct===!0&&K.setGlobalState(R.clippingPlanes,w.state.camera)):w=null,_.pop(),_.length>0?b=_[_.length-1]:b=null,D!==null&&D.renderEnd()};function Au(T,F,X,z){if(T.visible===!1)return;if(T.layers.test(F.layers)){if(T.isGroup)X=T.renderOrder;else if(T.isLOD)T.autoUpdate===!0&&T.update(F);else if(T.isLight)w.pushLight(T),T.castShadow&&w.pushShadow(T);else if(T.isSprite){const Me=F.isArrayCamera?Ht:Ge;if(!T.frustumCulled||T.intersectsFrustum(Me)){z&&It.setFromMatrixPosition(T.matrixWorld).applyMatrix4(dt);const ue=ne.update(T),ve=T.material;ve.visible&&b.push(T,ue,ve,X,It.z,null,F)}}else if(T.isMesh||T.isLine||T.isPoints){const Me=F.isArrayCamera?Ht:Ge;if(!T.frustumCulled||T.intersectsFrustum(Me)){const ue=ne.update(T),ve=T.material;if(z&&(T.boundingSphere!==void 0?(T.boundingSphere===null&&T.computeBoundingSphere(),It.copy(T.boundingSphere.center)):(ue.boundingSphere===null&&ue.computeBoundingSphere(),It.copy(ue.boundingSphere.center)),It.applyMatrix4(T.matrixWorld).applyMatrix4(dt)),Array.isArray(ve)){const Ee=ue.groups;for(let Ue=0,Ve=Ee.length;Ue<Ve;Ue++){const ye=Ee[Ue],We=ve[ye.materialIndex];We&&We.visible&&b.push(T,ue,We,X,It.z,ye,F)}}else ve.visible&&b.push(T,ue,ve,X,It.z,null,F)}}}const he=T.children;for(let Me=0,ue=he.length;Me<ue;Me++)Au(he[Me],F,X,z)}function up(T,F,X,z){const{opaque:G,transmissive:he,transparent:Me}=T;w.setupLightsView(X),Ct===!0&&K.setGlobalState(R.clippingPlanes,X),z&&pe.viewport(ee.copy(z)),G.length>0&&zo(G,F,X),he.length>0&&zo(he,F,X),Me.length>0&&zo(Me,F,X),pe.buffers.depth.setTest(!0),pe.buffers.depth.setMask(!0),pe.buffers.color.setMask(!0),pe.setPolygonOffset(!1)}function fp(T,F,X,z){if((X.isScene===!0?X.overrideMaterial:null)!==null)return;if(w.state.transmissionRenderTarget[z.id]===void 0){const ye=ut.has("EXT_color_buffer_half_float")||ut.has("EXT_color_buffer_float");w.state.transmissionRenderTarget[z.id]=new Rn(1,1,{generateMipmaps:!0,type:ye?kn:hn,minFilter:yi,samples:Math.max(4,ft.samples),stencilBuffer:s,resolveDepthBuffer:!1,resolveStencilBuffer:!1,storeMultisampledDepthBuffer:!1,storeMultisampledStencilBuffer:!1,colorSpace:Xe.workingColorSpace})}const he=w.state.transmissionRenderTarget[z.id],Me=z.viewport||ee;he.setSize(Me.z*R.transmissionResolutionScale,Me.w*R.transmissionResolutionScale);const ue=R.getRenderTarget(),ve=R.getActiveCubeFace(),Ee=R.getActiveMipmapLevel();R.setRenderTarget(he),R.getClearColor(Z),fe=R.getClearAlpha(),fe<1&&R.setClearColor(16777215,.5),R.clear(),bn&&U.render(X);const Ue=R.toneMapping;R.toneMapping=si;const Ve=z.viewport;if(z.viewport!==void 0&&(z.viewport=void 0),w.setupLightsView(z),Ct===!0&&K.setGlobalState(R.clippingPlanes,z),zo(T,X,z),Ne.updateMultisampleRenderTarget(he),Ne.updateRenderTargetMipmap(he),ut.has("WEBGL_multisampled_render_to_texture")===!1){let ye=!1;for(let We=0,yt=F.length;We<yt;We++){const ot=F[We],{object:st,geometry:$t,material:be,group:en}=ot;if(be.side===an&&st.layers.test(z.layers)){const Je=be.side;be.side=Kt,be.needsUpdate=!0,dp(st,X,z,$t,be,en),be.side=Je,be.needsUpdate=!0,ye=!0}}ye===!0&&(Ne.updateMultisampleRenderTarget(he),Ne.updateRenderTargetMipmap(he))}R.setRenderTarget(ue,ve,Ee),R.setClearColor(Z,fe),Ve!==void 0&&(z.viewport=Ve),R.toneMapping=Ue}function zo(T,F,X){const z=F.isScene===!0?F.overrideMaterial:null;for(let G=0,he=T.length;G<he;G++){const Me=T[G],{object:ue,geometry:ve,group:Ee}=Me;let Ue=Me.material;Ue.allowOverride===!0&&z!==null&&(Ue=z),ue.layers.test(X.layers)&&dp(ue,F,X,ve,Ue,Ee)}}function dp(T,F,X,z,G,he){D!==null&&G.isNodeMaterial&&D.setObject(T,G),T.onBeforeRender(R,F,X,z,G,he),T.modelViewMatrix.multiplyMatrices(X.matrixWorldInverse,T.matrixWorld),T.normalMatrix.getNormalMatrix(T.modelViewMatrix),G.onBeforeRender(R,F,X,z,T,he),G.transparent===!0&&G.side===an&&G.forceSinglePass===!1?(G.side=Kt,G.needsUpdate=!0,R.renderBufferDirect(X,F,z,G,T,he),G.side=ri,G.needsUpdate=!0,R.renderBufferDirect(X,F,z,G,T,he),G.side=an):R.renderBufferDirect(X,F,z,G,T,he),T.onAfterRender(R,F,X,z,G,he)}function hp(T){let F=0;for(const X of T)X.texture!==null&&F++;return F}function Ks(T,F,X){F.isScene!==!0&&(F=yn);const z=Ce.get(T),G=w.state.lights,he=w.state.shadowsArray,Me=G.state.version,ue=Q.getParameters(T,G.state,he,F,X,w.state.lightProbeGridArray),ve=Q.getProgramCacheKey(ue);let Ee=z.programs;z.environment=T.isMeshStandardMaterial||T.isMeshLambertMaterial||T.isMeshPhongMaterial?F.environment:null,z.fog=F.fog;const Ue=T.isMeshStandardMaterial||T.isMeshLambertMaterial&&!T.envMap||T.isMeshPhongMaterial&&!T.envMap;z.envMap=C.get(T.envMap||z.environment,Ue),z.envMapRotation=z.environment!==null&&T.envMap===null?F.environmentRotation:T.envMapRotation,Ee===void 0&&(T.addEventListener("dispose",nt),Ee=new Map,z.programs=Ee,z.programVariants=new Map);let Ve=Ee.get(ve);if(Ve!==void 0){if(z.currentProgram===Ve&&z.lightsStateVersion===Me)return mp(T,ue),Ve}else ue.uniforms=Q.getUniforms(T),D!==null&&T.isNodeMaterial&&D.build(T,X,ue),T.onBeforeCompile(ue,R),Ve=Q.acquireProgram(ue,ve),Ee.set(ve,Ve),z.uniforms=ue.uniforms;const ye=z.uniforms;return(!T.isShaderMaterial&&!T.isRawShaderMaterial||T.clipping===!0)&&(ye.clippingPlanes=K.uniform),mp(T,ue),z.needsLights=Ry(T),z.lightsStateVersion=Me,z.needsLights&&(ye.ambientLightColor.value=G.state.ambient,ye.lightProbe.value=G.state.probe,ye.sunLights.value=G.state.sun,ye.sunLightShadows.value=G.state.sunShadow,ye.directionalLights.value=G.state.directional,ye.directionalLightShadows.value=G.state.directionalShadow,ye.spotLights.value=G.state.spot,ye.spotLightShadows.value=G.state.spotShadow,ye.rectAreaLights.value=G.state.rectArea,ye.ltc_1.value=G.state.rectAreaLTC1,ye.ltc_2.value=G.state.rectAreaLTC2,ye.pointLights.value=G.state.point,ye.pointLightShadows.value=G.state.pointShadow,ye.hemisphereLights.value=G.state.hemi,ye.sunShadowMatrix.value=G.state.sunShadowMatrix,ye.sunShadowCascade.value=G.state.sunShadowCascade,ye.directionalShadowMatrix.value=G.state.directionalShadowMatrix,ye.spotLightMatrix.value=G.state.spotLightMatrix,ye.spotLightMap.value=G.state.spotLightMap,ye.pointShadowMatrix.value=G.state.pointShadowMatrix),z.numLightProbeGrids=hp(w.state.lightProbeGridArray),z.currentProgram=Ve,z.uniformsList=null,Ve}function Ty(T,F,X,z,G){const he=Ce.get(T),Me=he.currentProgram.id+","+z+","+G;let ue=he.programVariants.get(Me);return ue===void 0?(ue=Ks(T,F,X),he.programVariants.set(Me,ue)):(he.currentProgram=ue,he.uniformsList=null,he.outputColorSpace=z,he.toneMapping=G),ue}function pp(T){if(T.uniformsList===null){const F=T.currentProgram.getUniforms();T.uniformsList=ro.seqWithValue(F.seq,T.uniforms)}return T.uniformsList}function mp(T,F){const X=Ce.get(T);X.outputColorSpace=F.outputColorSpace,X.batching=F.batching,X.batchingColor=F.batchingColor,X.instancing=F.instancing,X.instancingColor=F.instancingColor,X.instancingMorph=F.instancingMorph,X.skinning=F.skinning,X.morphTargets=F.morphTargets,X.morphNormals=F.morphNormals,X.morphColors=F.morphColors,X.morphTargetsCount=F.morphTargetsCount,X.numClippingPlanes=F.numClippingPlanes,X.numIntersection=F.numClipIntersection,X.vertexAlphas=F.vertexAlphas,X.vertexTangents=F.vertexTangents,X.toneMapping=F.toneMapping}function Ay(T,F,X,z,G){F.isScene!==!0&&(F=yn),Ne.resetTextureUnits();const he=F.fog,Me=z.isMeshStandardMaterial||z.isMeshLambertMaterial||z.isMeshPhongMaterial?F.environment:null,ue=te===null?R.outputColorSpace:te.isXRRenderTarget===!0?te.texture.colorSpace:Xe.workingColorSpace,ve=z.isMeshStandardMaterial||z.isMeshLambertMaterial&&!z.envMap||z.isMeshPhongMaterial&&!z.envMap,Ee=C.get(z.envMap||Me,ve),Ue=z.vertexColors===!0&&!!X.attributes.color&&X.attributes.color.itemSize===4,Ve=!!X.attributes.tangent&&(!!z.normalMap||z.anisotropy>0),ye=!!X.morphAttributes.position,We=!!X.morphAttributes.normal,yt=!!X.morphAttributes.color;let ot=si;z.toneMapped&&(te===null||te.isXRRenderTarget===!0)&&(ot=R.toneMapping);const st=X.morphAttributes.position||X.morphAttributes.normal||X.morphAttributes.color,$t=st!==void 0?st.length:0,be=Ce.get(z),en=w.state.lights;if(Ct===!0&&(sn===!0||T!==j)){const ht=T===j&&z.id===$;K.setState(z,T,ht)}let Je=!1,gr=!1;z.version===be.__version?be.needsLights&&be.lightsStateVersion!==en.state.version||G.isBatchedMesh&&be.batching===!1||!G.isBatchedMesh&&be.batching===!0||G.isBatchedMesh&&be.batchingColor===!0&&G._colorsTexture===null||G.isBatchedMesh&&be.batchingColor===!1&&G._colorsTexture!==null||G.isInstancedMesh&&be.instancing===!1||!G.isInstancedMesh&&be.instancing===!0||G.isSkinnedMesh&&be.skinning===!1||!G.isSkinnedMesh&&be.skinning===!0||G.isInstancedMesh&&be.instancingColor===!0&&G.instanceColor===null||G.isInstancedMesh&&be.instancingColor===!1&&G.instanceColor!==null||G.isInstancedMesh&&be.instancingMorph===!0&&G.morphTexture===null||G.isInstancedMesh&&be.instancingMorph===!1&&G.morphTexture!==null||be.envMap!==Ee||z.fog===!0&&be.fog!==he||be.numClippingPlanes!==void 0&&(be.numClippingPlanes!==K.numPlanes||be.numIntersection!==K.numIntersection)||be.vertexAlphas!==Ue||be.vertexTangents!==Ve||be.morphTargets!==ye||be.morphNormals!==We||be.morphColors!==yt||be.morphTargetsCount!==$t||be.numLightProbeGrids!==hp(w.state.lightProbeGridArray)?Je=!0:(be.outputColorSpace!==ue||be.toneMapping!==ot)&&(gr=!0):(Je=!0,be.__version=z.version);let qt=be.currentProgram;(Je===!0||gr===!0)&&(qt=gr===!0?Ty(z,F,G,ue,ot):Ks(z,F,G),D&&z.isNodeMaterial&&D.onUpdateProgram(z,qt,be));let Ho=!1,$i=!1,_r=!1;const qe=qt.getUniforms(),Gt=be.uniforms;if(pe.useProgram(qt.program)&&(Ho=!0,$i=!0,_r=!0),z.id!==$&&($=z.id,$i=!0),Ho||j!==T){pe.buffers.depth.getReversed()&&T.reversedDepth!==!0&&(T._reversedDepth=!0,T.updateProjectionMatrix()),qe.setValue(B,"projectionMatrix",T.projectionMatrix),qe.setValue(B,"viewMatrix",T.matrixWorldInverse);const Ut=qe.map.cameraPosition;Ut!==void 0&&Ut.setValue(B,jn.setFromMatrixPosition(T.matrixWorld)),ft.logarithmicDepthBuffer&&qe.setValue(B,"logDepthBufFC",2/(Math.log(T.far+1)/Math.LN2)),(z.isMeshPhongMaterial||z.isMeshToonMaterial||z.isMeshLambertMaterial||z.isMeshBasicMaterial||z.isMeshStandardMaterial||z.isShaderMaterial)&&qe.setValue(B,"isOrthographic",T.isOrthographicCamera===!0),j!==T&&(j=T,$i=!0,_r=!0)}if(be.needsLights&&(en.state.sunShadowMap.length>0&&qe.setValue(B,"sunShadowMap",en.state.sunShadowMap,Ne),en.state.directionalShadowMap.length>0&&qe.setValue(B,"directionalShadowMap",en.state.directionalShadowMap,Ne),en.state.spotShadowMap.length>0&&qe.setValue(B,"spotShadowMap",en.state.spotShadowMap,Ne),en.state.pointShadowMap.length>0&&qe.setValue(B,"pointShadowMap",en.state.pointShadowMap,Ne)),G.isSkinnedMesh){qe.setOptional(B,G,"bindMatrix"),qe.setOptional(B,G,"bindMatrixInverse");const ht=G.skeleton;ht&&(ht.boneTexture===null&&ht.computeBoneTexture(),qe.setValue(B,"boneTexture",ht.boneTexture,Ne))}G.isBatchedMesh&&(qe.setOptional(B,G,"batchingTexture"),qe.setValue(B,"batchingTexture",G._matricesTexture,Ne),qe.setOptional(B,G,"batchingIdTexture"),qe.setValue(B,"batchingIdTexture",G._indirectTexture,Ne),qe.setOptional(B,G,"batchingColorTexture"),G._colorsTexture!==null&&qe.setValue(B,"batchingColorTexture",G._colorsTexture,Ne));const Fn=X.morphAttributes;if((Fn.position!==void 0||Fn.normal!==void 0||Fn.color!==void 0)&&J.update(G,X,qt),($i||be.receiveShadow!==G.receiveShadow)&&(be.receiveShadow=G.receiveShadow,qe.setValue(B,"receiveShadow",G.receiveShadow)),(z.isMeshStandardMaterial||z.isMeshLambertMaterial||z.isMeshPhongMaterial)&&z.envMap===null&&F.environment!==null&&(Gt.envMapIntensity.value=F.environmentIntensity),Gt.dfgLUT!==void 0&&(Gt.dfgLUT.value=Hx()),$i){if(qe.setValue(B,"toneMappingExposure",R.toneMappingExposure),be.needsLights&&wy(Gt,_r),he&&z.fog===!0&&ae.refreshFogUniforms(Gt,he),ae.refreshMaterialUniforms(Gt,z,ge,we,w.state.transmissionRenderTarget[T.id]),be.needsLights&&be.numLightProbeGrids>0){const ht=S;let Ut=0;for(const vi of w.state.lightProbeGridArray)vi.texture!==null&&(ht.textures[Ut]=vi.texture,ht.min[Ut]=vi.boundingBox.min,ht.max[Ut]=vi.boundingBox.max,ht.resolution[Ut]=vi.resolution,Ut++);for(const vi in ht)ht[vi].length=Ut;Gt.probesSH.value=ht.textures,Gt.probesMin.value=ht.min,Gt.probesMax.value=ht.max,Gt.probesResolution.value=ht.resolution}ro.upload(B,pp(be),Gt,Ne)}if(z.isShaderMaterial&&z.uniformsNeedUpdate===!0&&(ro.upload(B,pp(be),Gt,Ne),z.uniformsNeedUpdate=!1),z.isSpriteMaterial&&qe.setValue(B,"center",G.center),qe.setValue(B,"modelViewMatrix",G.modelViewMatrix),qe.setValue(B,"normalMatrix",G.normalMatrix),qe.setValue(B,"modelMatrix",G.matrixWorld),z.uniformsGroups!==void 0){const ht=z.uniformsGroups;for(let Ut=0,vi=ht.length;Ut<vi;Ut++){const _p=ht[Ut];Te.update(_p,qt),Te.bind(_p,qt)}}return qt}function wy(T,F){T.ambientLightColor.needsUpdate=F,T.lightProbe.needsUpdate=F,T.sunLights.needsUpdate=F,T.sunLightShadows.needsUpdate=F,T.directionalLights.needsUpdate=F,T.directionalLightShadows.needsUpdate=F,T.pointLights.needsUpdate=F,T.pointLightShadows.needsUpdate=F,T.spotLights.needsUpdate=F,T.spotLightShadows.needsUpdate=F,T.rectAreaLights.needsUpdate=F,T.hemisphereLights.needsUpdate=F}function Ry(T){return T.isMeshLambertMaterial||T.isMeshToonMaterial||T.isMeshPhongMaterial||T.isMeshStandardMaterial||T.isShadowMaterial||T.isShaderMaterial&&T.lights===!0}this.getActiveCubeFace=function(){return V},this.getActiveMipmapLevel=function(){return W},this.getRenderTarget=function(){return te},this.setRenderTargetTextures=function(T,F,X){const z=Ce.get(T);z.__autoAllocateDepthBuffer=T.resolveDepthBuffer===!1,z.__autoAllocateDepthBuffer===!1&&(z.__useRenderToTexture=!1),Ce.get(T.texture).__webglTexture=F,Ce.get(T.depthTexture).__webglTexture=z.__autoAllocateDepthBuffer?void 0:X,z.__hasExternalTextures=!0},this.setRenderTargetFramebuffer=function(T,F){const X=Ce.get(T);X.__webglFramebuffer=F,X.__useDefaultFramebuffer=F===void 0},this.setRenderTarget=function(T,F=0,X=0){te=T,V=F,W=X;let z=null,G=!1,he=!1;if(T){const ue=Ce.get(T);if(ue.__useDefaultFramebuffer!==void 0){pe.bindFramebuffer(B.FRAMEBUFFER,ue.__webglFramebuffer),ee.copy(T.viewport),Se.copy(T.scissor),De=T.scissorTest,pe.viewport(ee),pe.scissor(Se),pe.setScissorTest(De),$=-1;return}else if(ue.__webglFramebuffer===void 0)Ne.setupRenderTarget(T);else if(ue.__hasExternalTextures)Ne.rebindTextures(T,Ce.get(T.texture).__webglTexture,Ce.get(T.depthTexture).__webglTexture);else if(T.depthBuffer){const Ue=T.depthTexture;if(ue.__boundDepthTexture!==Ue){if(Ue!==null&&Ce.has(Ue)&&(T.width!==Ue.image.width||T.height!==Ue.image.height))throw new Error("THREE.WebGLRenderer: Attached DepthTexture is initialized to the incorrect size.");Ne.setupDepthRenderbuffer(T)}}const ve=T.texture;(ve.isData3DTexture||ve.isDataArrayTexture||ve.isCompressedArrayTexture)&&(he=!0);const Ee=Ce.get(T).__webglFramebuffer;T.isWebGLCubeRenderTarget?(Array.isArray(Ee[F])?z=Ee[F][X]:z=Ee[F],G=!0):T.samples>0&&Ne.useMultisampledRTT(T)===!1?z=Ce.get(T).__webglMultisampledFramebuffer:Array.isArray(Ee)?z=Ee[X]:z=Ee,ee.copy(T.viewport),Se.copy(T.scissor),De=T.scissorTest}else ee.copy(Re).multiplyScalar(ge).floor(),Se.copy($e).multiplyScalar(ge).floor(),De=rt;if(X!==0&&(z=O),pe.bindFramebuffer(B.FRAMEBUFFER,z)&&pe.drawBuffers(T,z),pe.viewport(ee),pe.scissor(Se),pe.setScissorTest(De),G){const ue=Ce.get(T.texture);B.framebufferTexture2D(B.FRAMEBUFFER,B.COLOR_ATTACHMENT0,B.TEXTURE_CUBE_MAP_POSITIVE_X+F,ue.__webglTexture,X)}else if(he){const ue=F;for(let ve=0;ve<T.textures.length;ve++){const Ee=Ce.get(T.textures[ve]);B.framebufferTextureLayer(B.FRAMEBUFFER,B.COLOR_ATTACHMENT0+ve,Ee.__webglTexture,X,ue)}}else if(T!==null&&X!==0){const ue=Ce.get(T.texture);B.framebufferTexture2D(B.FRAMEBUFFER,B.COLOR_ATTACHMENT0,B.TEXTURE_2D,ue.__webglTexture,X)}$=-1};function gp(T){const F=Ce.get(T);return(F.__readFormat!==T.format||F.__readType!==T.type)&&(F.__readFormat=T.format,F.__readType=T.type,F.__formatReadable=ft.textureFormatReadable(T.format),F.__typeReadable=ft.textureTypeReadable(T.type)),F}this.readRenderTargetPixels=function(T,F,X,z,G,he,Me,ue=0){if(!(T&&T.isWebGLRenderTarget)){Ke("WebGLRenderer.readRenderTargetPixels: renderTarget is not THREE.WebGLRenderTarget.");return}let ve=Ce.get(T).__webglFramebuffer;if(T.isWebGLCubeRenderTarget&&Me!==void 0&&(ve=ve[Me],Array.isArray(ve)&&(ve=ve[0])),ve){pe.bindFramebuffer(B.FRAMEBUFFER,ve);try{const Ee=T.textures[ue],Ue=Ee.format,Ve=Ee.type;T.textures.length>1&&B.readBuffer(B.COLOR_ATTACHMENT0+ue);const ye=gp(Ee);if(ye.__formatReadable===!1){Ke("WebGLRenderer.readRenderTargetPixels: renderTarget is not in RGBA or implementation defined format.");return}if(ye.__typeReadable===!1){Ke("WebGLRenderer.readRenderTargetPixels: renderTarget is not in UnsignedByteType or implementation defined type.");return}F>=0&&F<=T.width-z&&X>=0&&X<=T.height-G&&B.readPixels(F,X,z,G,se.convert(Ue),se.convert(Ve),he)}finally{const Ee=te!==null?Ce.get(te).__webglFramebuffer:null;pe.bindFramebuffer(B.FRAMEBUFFER,Ee)}}},this.readRenderTargetPixelsAsync=async function(T,F,X,z,G,he,Me,ue=0){if(!(T&&T.isWebGLRenderTarget))throw new Error("THREE.WebGLRenderer.readRenderTargetPixels: renderTarget is not THREE.WebGLRenderTarget.");let ve=Ce.get(T).__webglFramebuffer;if(T.isWebGLCubeRenderTarget&&Me!==void 0&&(ve=ve[Me],Array.isArray(ve)&&(ve=ve[0])),ve)if(F>=0&&F<=T.width-z&&X>=0&&X<=T.height-G){pe.bindFramebuffer(B.FRAMEBUFFER,ve);const Ee=T.textures[ue],Ue=Ee.format,Ve=Ee.type;T.textures.length>1&&B.readBuffer(B.COLOR_ATTACHMENT0+ue);const ye=gp(Ee);if(ye.__formatReadable===!1)throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: renderTarget is not in RGBA or implementation defined format.");if(ye.__typeReadable===!1)throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: renderTarget is not in UnsignedByteType or implementation defined type.");const We=B.createBuffer();B.bindBuffer(B.PIXEL_PACK_BUFFER,We),B.bufferData(B.PIXEL_PACK_BUFFER,he.byteLength,B.STREAM_READ),B.readPixels(F,X,z,G,se.convert(Ue),se.convert(Ve),0),B.bindBuffer(B.PIXEL_PACK_BUFFER,null);const yt=te!==null?Ce.get(te).__webglFramebuffer:null;pe.bindFramebuffer(B.FRAMEBUFFER,yt);const ot=B.fenceSync(B.SYNC_GPU_COMMANDS_COMPLETE,0);return B.flush(),await Hm(B,ot,4),B.bindBuffer(B.PIXEL_PACK_BUFFER,We),B.getBufferSubData(B.PIXEL_PACK_BUFFER,0,he),B.bindBuffer(B.PIXEL_PACK_BUFFER,null),B.deleteBuffer(We),B.deleteSync(ot),he}else throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: requested read bounds are out of range.")},this.copyFramebufferToTexture=function(T,F=null,X=0){const z=Math.pow(2,-X),G=Math.floor(T.image.width*z),he=Math.floor(T.image.height*z),Me=F!==null?F.x:0,ue=F!==null?F.y:0;Ne.setTexture2D(T,0),B.copyTexSubImage2D(B.TEXTURE_2D,X,0,0,Me,ue,G,he),pe.unbindTexture()},this.copyTextureToTexture=function(T,F,X=null,z=null,G=0,he=0){let Me,ue,ve,Ee,Ue,Ve,ye,We,yt;const ot=T.isCompressedTexture?T.mipmaps[he]:T.image;if(X!==null)Me=X.max.x-X.min.x,ue=X.max.y-X.min.y,ve=X.isBox3?X.max.z-X.min.z:1,Ee=X.min.x,Ue=X.min.y,Ve=X.isBox3?X.min.z:0;else{const qe=Math.pow(2,-G);Me=Math.floor(ot.width*qe),ue=Math.floor(ot.height*qe),T.isDataArrayTexture?ve=ot.depth:T.isData3DTexture?ve=Math.floor(ot.depth*qe):ve=1,Ee=0,Ue=0,Ve=0}z!==null?(ye=z.x,We=z.y,yt=z.z):(ye=0,We=0,yt=0);const st=se.convert(F.format),$t=se.convert(F.type);let be;F.isData3DTexture?(Ne.setTexture3D(F,0),be=B.TEXTURE_3D):F.isDataArrayTexture||F.isCompressedArrayTexture?(Ne.setTexture2DArray(F,0),be=B.TEXTURE_2D_ARRAY):(Ne.setTexture2D(F,0),be=B.TEXTURE_2D),pe.activeTexture(B.TEXTURE0),pe.pixelStorei(B.UNPACK_FLIP_Y_WEBGL,F.flipY),pe.pixelStorei(B.UNPACK_PREMULTIPLY_ALPHA_WEBGL,F.premultiplyAlpha),pe.pixelStorei(B.UNPACK_ALIGNMENT,F.unpackAlignment);const en=pe.getParameter(B.UNPACK_ROW_LENGTH),Je=pe.getParameter(B.UNPACK_IMAGE_HEIGHT),gr=pe.getParameter(B.UNPACK_SKIP_PIXELS),qt=pe.getParameter(B.UNPACK_SKIP_ROWS),Ho=pe.getParameter(B.UNPACK_SKIP_IMAGES);pe.pixelStorei(B.UNPACK_ROW_LENGTH,ot.width),pe.pixelStorei(B.UNPACK_IMAGE_HEIGHT,ot.height),pe.pixelStorei(B.UNPACK_SKIP_PIXELS,Ee),pe.pixelStorei(B.UNPACK_SKIP_ROWS,Ue),pe.pixelStorei(B.UNPACK_SKIP_IMAGES,Ve);const $i=T.isDataArrayTexture||T.isData3DTexture,_r=F.isDataArrayTexture||F.isData3DTexture;if(T.isDepthTexture){const qe=Ce.get(T),Gt=Ce.get(F),Fn=Ce.get(qe.__renderTarget),ht=Ce.get(Gt.__renderTarget);pe.bindFramebuffer(B.READ_FRAMEBUFFER,Fn.__webglFramebuffer),pe.bindFramebuffer(B.DRAW_FRAMEBUFFER,ht.__webglFramebuffer);for(let Ut=0;Ut<ve;Ut++)$i&&(B.framebufferTextureLayer(B.READ_FRAMEBUFFER,B.COLOR_ATTACHMENT0,Ce.get(T).__webglTexture,G,Ve+Ut),B.framebufferTextureLayer(B.DRAW_FRAMEBUFFER,B.COLOR_ATTACHMENT0,Ce.get(F).__webglTexture,he,yt+Ut)),B.blitFramebuffer(Ee,Ue,Ee+Me,Ue+ue,ye,We,ye+Me,We+ue,B.DEPTH_BUFFER_BIT,B.NEAREST);pe.bindFramebuffer(B.READ_FRAMEBUFFER,null),pe.bindFramebuffer(B.DRAW_FRAMEBUFFER,null)}else if(G!==0||T.isRenderTargetTexture||Ce.has(T)){const qe=Ce.get(T),Gt=Ce.get(F);pe.bindFramebuffer(B.READ_FRAMEBUFFER,L),pe.bindFramebuffer(B.DRAW_FRAMEBUFFER,k);for(let Fn=0;Fn<ve;Fn++)$i?B.framebufferTextureLayer(B.READ_FRAMEBUFFER,B.COLOR_ATTACHMENT0,qe.__webglTexture,G,Ve+Fn):B.framebufferTexture2D(B.READ_FRAMEBUFFER,B.COLOR_ATTACHMENT0,B.TEXTURE_2D,qe.__webglTexture,G),_r?B.framebufferTextureLayer(B.DRAW_FRAMEBUFFER,B.COLOR_ATTACHMENT0,Gt.__webglTexture,he,yt+Fn):B.framebufferTexture2D(B.DRAW_FRAMEBUFFER,B.COLOR_ATTACHMENT0,B.TEXTURE_2D,Gt.__webglTexture,he),G!==0?B.blitFramebuffer(Ee,Ue,Ee+Me,Ue+ue,ye,We,ye+Me,We+ue,B.COLOR_BUFFER_BIT,B.NEAREST):_r?B.copyTexSubImage3D(be,he,ye,We,yt+Fn,Ee,Ue,Me,ue):B.copyTexSubImage2D(be,he,ye,We,Ee,Ue,Me,ue);pe.bindFramebuffer(B.READ_FRAMEBUFFER,null),pe.bindFramebuffer(B.DRAW_FRAMEBUFFER,null)}else _r?T.isDataTexture||T.isData3DTexture?B.texSubImage3D(be,he,ye,We,yt,Me,ue,ve,st,$t,ot.data):F.isCompressedArrayTexture?B.compressedTexSubImage3D(be,he,ye,We,yt,Me,ue,ve,st,ot.data):B.texSubImage3D(be,he,ye,We,yt,Me,ue,ve,st,$t,ot):T.isDataTexture?B.texSubImage2D(B.TEXTURE_2D,he,ye,We,Me,ue,st,$t,ot.data):T.isCompressedTexture?B.compressedTexSubImage2D(B.TEXTURE_2D,he,ye,We,ot.width,ot.height,st,ot.data):B.texSubImage2D(B.TEXTURE_2D,he,ye,We,Me,ue,st,$t,ot);pe.pixelStorei(B.UNPACK_ROW_LENGTH,en),pe.pixelStorei(B.UNPACK_IMAGE_HEIGHT,Je),pe.pixelStorei(B.UNPACK_SKIP_PIXELS,gr),pe.pixelStorei(B.UNPACK_SKIP_ROWS,qt),pe.pixelStorei(B.UNPACK_SKIP_IMAGES,Ho),he===0&&F.generateMipmaps===!0&&F.mipmapsAutoUpdate===!0&&B.generateMipmap(be),pe.unbindTexture()},this.initRenderTarget=function(T){Ce.get(T).__webglFramebuffer===void 0&&Ne.setupRenderTarget(T)},this.initTexture=function(T){T.isCubeTexture?Ne.setTextureCube(T,0):T.isData3DTexture?Ne.setTexture3D(T,0):T.isDataArrayTexture||T.isCompressedArrayTexture?Ne.setTexture2DArray(T,0):Ne.setTexture2D(T,0),pe.unbindTexture()},this.resetState=function(){V=0,W=0,te=null,pe.reset(),oe.reset()},typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}get coordinateSystem(){return wn}get outputColorSpace(){return this._outputColorSpace}set outputColorSpace(e){this._outputColorSpace=e;const t=this.getContext();t.drawingBufferColorSpace=Xe._getDrawingBufferColorSpace(e),t.unpackColorSpace=Xe._getUnpackColorSpace()}}const rh=0,Gx=1,Vx=2,sh=2,Uc=1.25,ah=1,cn=32,St=cn/4,oh=65535,ao=Math.pow(2,-24),Fc=Symbol("SKIP_GENERATION"),lh={strategy:rh,maxDepth:40,targetLeafSize:10,useSharedArrayBuffer:!1,setBoundingBox:!0,onProgress:null,indirect:!1,verbose:!0,range:null,[Fc]:!1};function pt(n,e,t){return t.min.x=e[n],t.min.y=e[n+1],t.min.z=e[n+2],t.max.x=e[n+3],t.max.y=e[n+4],t.max.z=e[n+5],t}function Oc(n){let e=-1,t=-1/0;for(let i=0;i<3;i++){const r=n[i+3]-n[i];r>t&&(t=r,e=i)}return e}function ch(n,e,t){for(let i=0;i<3;i++){const r=e[n+2*i],s=e[n+2*i+1],a=r-s,o=r+s;a<t[i]&&(t[i]=a),o>t[i+3]&&(t[i+3]=o)}}function Bc(n){const e=n[3]-n[0],t=n[4]-n[1],i=n[5]-n[2];return 2*(e*t+t*i+i*e)}function _t(n,e){return e[n+15]===oh}function Dt(n,e){return e[n+6]}function Xt(n,e){return e[n+14]}function At(n){return n+St}function wt(n,e){const t=e[n+6];return n+t*St}function kc(n,e){return e[n+7]}function cb(n){return n}function zc(n,e,t,i,r){let s=1/0,a=1/0,o=1/0,l=-1/0,c=-1/0,f=-1/0,d=1/0,u=1/0,h=1/0,g=-1/0,x=-1/0,m=-1/0;const p=n.offset||0;for(let v=(e-p)*6,M=(e+t-p)*6;v<M;v+=6){const S=n[v+0],b=n[v+1],w=S-b,_=S+b;w<s&&(s=w),_>l&&(l=_),S<d&&(d=S),S>g&&(g=S);const y=n[v+2],I=n[v+3],R=y-I,P=y+I;R<a&&(a=R),P>c&&(c=P),y<u&&(u=y),y>x&&(x=y);const D=n[v+4],O=n[v+5],L=D-O,k=D+O;L<o&&(o=L),k>f&&(f=k),D<h&&(h=D),D>m&&(m=D)}i[0]=s,i[1]=a,i[2]=o,i[3]=l,i[4]=c,i[5]=f,r[0]=d,r[1]=u,r[2]=h,r[3]=g,r[4]=x,r[5]=m}const $n=8,Hc=8,Gc=new Int32Array($n),qn=new Float32Array($n*6),Vr=new Float32Array($n*6),In=new Float32Array(6),oo=new Float32Array(6),Ii=new Int32Array(Hc),uh=new Float32Array(Hc*6);function Wx(n,e,t,i){for(let r=0;r<3;r++){const s=e[n+2*r],a=e[n+2*r+1],o=s-a,l=s+a;o<t[i+r]&&(t[i+r]=o),l>t[i+r+3]&&(t[i+r+3]=l)}}function fh(n,e){const t=n[e+3]-n[e],i=n[e+4]-n[e+1],r=n[e+5]-n[e+2];return 2*(t*i+i*r+r*t)}function Xx(n,e,t,i,r,s){let a=-1,o=0;if(s===rh)a=Oc(e),a!==-1&&(o=(e[a]+e[a+3])/2);else if(s===Gx)a=Oc(n),a!==-1&&(o=$x(t,i,r,a));else if(s===Vx){const l=Bc(n);let c=Uc*r;const f=t.offset||0,d=(i-f)*6,u=(i+r-f)*6;for(let h=0;h<3;h++){const g=e[h],p=(e[h+3]-g)/$n;if(r<Hc){for(let v=0;v<r;v++){const M=d+v*6,S=t[M+2*h];let b=v;for(;b>0&&t[Ii[b-1]+2*h]>S;)Ii[b]=Ii[b-1],b--;Ii[b]=M}for(let v=0;v<3;v++)In[v]=1/0,In[v+3]=-1/0,oo[v]=1/0,oo[v+3]=-1/0;for(let v=r-1;v>=0;v--)ch(Ii[v],t,oo),uh.set(oo,v*6);for(let v=0;v<r-1;v++){ch(Ii[v],t,In);const M=t[Ii[v+1]+2*h];if(t[Ii[v]+2*h]===M)continue;const S=v+1,b=r-S,w=Bc(In)/l,_=fh(uh,S*6)/l,y=ah+Uc*(w*S+_*b);y<c&&(a=h,c=y,o=M)}}else{for(let S=0;S<$n;S++){Gc[S]=0;for(let b=0;b<3;b++)qn[S*6+b]=1/0,qn[S*6+b+3]=-1/0}for(let S=d;S<u;S+=6){let _=~~((t[S+2*h]-g)/p);_>=$n&&(_=$n-1),Gc[_]++,Wx(S,t,qn,_*6)}const v=($n-1)*6;for(let S=0;S<6;S++)Vr[v+S]=qn[v+S];for(let S=$n-2;S>=0;S--){const b=S*6,w=b+6;for(let _=0;_<3;_++)Vr[b+_]=Math.min(qn[b+_],Vr[w+_]),Vr[b+_+3]=Math.max(qn[b+_+3],Vr[w+_+3])}let M=0;for(let S=0;S<$n-1;S++){const b=S*6,w=Gc[S];if(w!==0)for(let P=0;P<3;P++)M===0?(In[P]=qn[b+P],In[P+3]=qn[b+P+3]):(In[P]=Math.min(In[P],qn[b+P]),In[P+3]=Math.max(In[P+3],qn[b+P+3]));M+=w;let _=0,y=0;M!==0&&(_=Bc(In)/l);const I=r-M;I!==0&&(y=fh(Vr,b+6)/l);const R=ah+Uc*(_*M+y*I);R<c&&(a=h,c=R,o=g+p+S*p)}}}}else console.warn(`BVH: Invalid build strategy value ${s} used.`);return{axis:a,pos:o}}function $x(n,e,t,i){let r=0;const s=n.offset;for(let a=e,o=e+t;a<o;a++)r+=n[(a-s)*6+i*2];return r/t}function qx(n,e,t,i,r,s){let a=i,o=i+r-1;const l=s.pos,c=s.axis*2,f=t.offset||0;for(;;){for(;a<=o&&t[(a-f)*6+c]<l;)a++;for(;a<=o&&t[(o-f)*6+c]>=l;)o--;if(a<o){for(let d=0;d<e;d++){let u=n[a*e+d];n[a*e+d]=n[o*e+d],n[o*e+d]=u}for(let d=0;d<6;d++){const u=a-f,h=o-f,g=t[u*6+d];t[u*6+d]=t[h*6+d],t[h*6+d]=g}a++,o--}else return a}}const Yx=Math.pow(2,32),Wr=new Float32Array(6),lo=new Float32Array(6);function Kx(n,e,t,i,r,s){const{maxDepth:a,verbose:o,targetLeafSize:l,_strictLeafSize:c=1/0,strategy:f,onProgress:d,useSharedArrayBuffer:u=!1}=r,h=n.primitiveBuffer,g=n.primitiveBufferStride,x=u?SharedArrayBuffer:ArrayBuffer,m=new x(cn*Math.max(1,2*Math.ceil(i)-1)),p=new Float32Array(m),v=new Uint32Array(m),M=new Uint16Array(m);let S=0,b=!1;return zc(e,t,i,Wr,lo),y(t,i,0),m.slice(0,S*cn);function w(I){d&&d((I-s.offset)/s.count)}function _(I,R,P){const D=I*2;v[I+6]=R,M[D+14]=P,M[D+15]=oh,w(R+P)}function y(I,R,P){const D=S++,O=D*St;p.set(Wr,O),!b&&P>=a&&(b=!0,o&&console.warn(`BVH: Max depth of ${a} reached when generating BVH. Consider increasing maxDepth.`));const L=R>c;if(R<=l&&!L||P>=a){_(O,I,R);return}const k=Xx(Wr,lo,e,I,R,f);let V=k.axis===-1?-1:qx(h,g,e,I,R,k);if(k.axis===-1||V===I||V===I+R){if(!L){_(O,I,R);return}k.axis=Math.max(0,Oc(Wr)),V=I+Math.max(1,Math.floor(R/2))}v[O+7]=k.axis;const W=V-I;zc(e,I,W,Wr,lo),y(I,W,P+1);const te=S-D;if(te>Yx)throw new Error("MeshBVH: Cannot store relative child node offset greater than 32 bits.");v[O+6]=te;const $=R-W;zc(e,V,$,Wr,lo),y(V,$,P+1)}}function Zx(n,e){const t=n.getRootRanges(e.range),i=t[0],r=t[t.length-1],s={offset:i.offset,count:r.offset+r.count-i.offset},a=new Float32Array(6*s.count);a.offset=s.offset,n.computePrimitiveBounds(s.offset,s.count,a),n._roots=t.map(o=>Kx(n,a,o.offset,o.count,e,s))}class Vc{constructor(e){this._getNewPrimitive=e,this._primitives=[]}getPrimitive(){const e=this._primitives;return e.length===0?this._getNewPrimitive():e.pop()}releasePrimitive(e){this._primitives.push(e)}}class Jx{constructor(){this.float32Array=null,this.uint16Array=null,this.uint32Array=null;const e=[];let t=null;this.setBuffer=i=>{t&&e.push(t),t=i,this.float32Array=new Float32Array(i),this.uint16Array=new Uint16Array(i),this.uint32Array=new Uint32Array(i)},this.clearBuffer=()=>{t=null,this.float32Array=null,this.uint16Array=null,this.uint32Array=null,e.length!==0&&this.setBuffer(e.pop())}}}const tt=new Jx;let Ni,Xr;const $r=[],co=new Vc(()=>new Jt);function Qx(n,e,t,i,r,s){Ni=co.getPrimitive(),Xr=co.getPrimitive(),$r.push(Ni,Xr),tt.setBuffer(n._roots[e]);const a=Wc(0,n.geometry,t,i,r,s);tt.clearBuffer(),co.releasePrimitive(Ni),co.releasePrimitive(Xr),$r.pop(),$r.pop();const o=$r.length;return o>0&&(Xr=$r[o-1],Ni=$r[o-2]),a}function Wc(n,e,t,i,r=null,s=0,a=0){const{float32Array:o,uint16Array:l,uint32Array:c}=tt;let f=n*2;if(_t(f,l)){const u=Dt(n,c),h=Xt(f,l);return pt(n,o,Ni),i(u,h,!1,a,s+n/St,Ni)}else{let R=function(D){const{uint16Array:O,uint32Array:L}=tt;let k=D*2;for(;!_t(k,O);)D=At(D),k=D*2;return Dt(D,L)},P=function(D){const{uint16Array:O,uint32Array:L}=tt;let k=D*2;for(;!_t(k,O);)D=wt(D,L),k=D*2;return Dt(D,L)+Xt(k,O)};const u=At(n),h=wt(n,c);let g=u,x=h,m,p,v,M;if(r&&(v=Ni,M=Xr,pt(g,o,v),pt(x,o,M),m=r(v),p=r(M),p<m)){g=h,x=u;const D=m;m=p,p=D,v=M}v||(v=Ni,pt(g,o,v));const S=_t(g*2,l),b=t(v,S,m,a+1,s+g/St);let w;if(b===sh){const D=R(g),L=P(g)-D;w=i(D,L,!0,a+1,s+g/St,v)}else w=b&&Wc(g,e,t,i,r,s,a+1);if(w)return!0;M=Xr,pt(x,o,M);const _=_t(x*2,l),y=t(M,_,p,a+1,s+x/St);let I;if(y===sh){const D=R(x),L=P(x)-D;I=i(D,L,!0,a+1,s+x/St,M)}else I=y&&Wc(x,e,t,i,r,s,a+1);return!!I}}const Bs=new tt.constructor,uo=new tt.constructor,Ui=new Vc(()=>new Jt),qr=new Jt,Yr=new Jt,Xc=new Jt,$c=new Jt;let qc=!1;function jx(n,e,t,i){if(qc)throw new Error("MeshBVH: Recursive calls to bvhcast not supported.");qc=!0;const r=n._roots,s=e._roots;let a,o=0,l=0;const c=new je().copy(t).invert();for(let f=0,d=r.length;f<d;f++){Bs.setBuffer(r[f]),l=0;const u=Ui.getPrimitive();pt(0,Bs.float32Array,u),u.applyMatrix4(c);for(let h=0,g=s.length;h<g&&(uo.setBuffer(s[h]),a=Nn(0,0,t,c,i,o,l,0,0,u),uo.clearBuffer(),l+=s[h].byteLength/cn,!a);h++);if(Ui.releasePrimitive(u),Bs.clearBuffer(),o+=r[f].byteLength/cn,a)break}return qc=!1,a}function Nn(n,e,t,i,r,s=0,a=0,o=0,l=0,c=null,f=!1){let d,u;f?(d=uo,u=Bs):(d=Bs,u=uo);const h=d.float32Array,g=d.uint32Array,x=d.uint16Array,m=u.float32Array,p=u.uint32Array,v=u.uint16Array,M=n*2,S=e*2,b=_t(M,x),w=_t(S,v);let _=!1;if(w&&b)f?_=r(Dt(e,p),Xt(e*2,v),Dt(n,g),Xt(n*2,x),l,a+e/St,o,s+n/St):_=r(Dt(n,g),Xt(n*2,x),Dt(e,p),Xt(e*2,v),o,s+n/St,l,a+e/St);else if(w){const y=Ui.getPrimitive();pt(e,m,y),y.applyMatrix4(t);const I=At(n),R=wt(n,g);pt(I,h,qr),pt(R,h,Yr);const P=y.intersectsBox(qr),D=y.intersectsBox(Yr);_=P&&Nn(e,I,i,t,r,a,s,l,o+1,y,!f)||D&&Nn(e,R,i,t,r,a,s,l,o+1,y,!f),Ui.releasePrimitive(y)}else{const y=At(e),I=wt(e,p);pt(y,m,Xc),pt(I,m,$c);const R=c.intersectsBox(Xc),P=c.intersectsBox($c);if(R&&P)_=Nn(n,y,t,i,r,s,a,o,l+1,c,f)||Nn(n,I,t,i,r,s,a,o,l+1,c,f);else if(R)if(b)_=Nn(n,y,t,i,r,s,a,o,l+1,c,f);else{const D=Ui.getPrimitive();D.copy(Xc).applyMatrix4(t);const O=At(n),L=wt(n,g);pt(O,h,qr),pt(L,h,Yr);const k=D.intersectsBox(qr),V=D.intersectsBox(Yr);_=k&&Nn(y,O,i,t,r,a,s,l,o+1,D,!f)||V&&Nn(y,L,i,t,r,a,s,l,o+1,D,!f),Ui.releasePrimitive(D)}else if(P)if(b)_=Nn(n,I,t,i,r,s,a,o,l+1,c,f);else{const D=Ui.getPrimitive();D.copy($c).applyMatrix4(t);const O=At(n),L=wt(n,g);pt(O,h,qr),pt(L,h,Yr);const k=D.intersectsBox(qr),V=D.intersectsBox(Yr);_=k&&Nn(I,O,i,t,r,a,s,l,o+1,D,!f)||V&&Nn(I,L,i,t,r,a,s,l,o+1,D,!f),Ui.releasePrimitive(D)}}return _}const Yc=new class{constructor(){let n=null,e=null,t=null,i=!1;this.root=null,this.buffer=null,this.uint32Array=null,this.uint16Array=null,this.setBVH=(s,a)=>{if(i)throw new Error("BVHTraversalHelper: cannot call setBVH during an active traversal.");this.root=a,this.buffer=n=s._roots[a],this.uint16Array=t=new Uint16Array(n),this.uint32Array=e=new Uint32Array(n)},this.reset=()=>{this.root=null,this.buffer=n=null,this.uint16Array=t=null,this.uint32Array=e=null},this.getRangeStart=s=>{let a=s*2;for(;!_t(a,t);)s=At(s),a=s*2;return Dt(s,e)},this.getRangeEnd=s=>{let a=s*2;for(;!_t(a,t);)s=wt(s,e),a=s*2;return Dt(s,e)+Xt(a,t)};const r=(s,a,o)=>{const l=a*2,c=_t(l,t);if(!s(o,c,a)&&!c){const d=At(a),u=wt(a,e);r(s,d,o+1),r(s,u,o+1)}};this.traverseBuffer=s=>{if(i)throw new Error("BVHTraversalHelper: cannot start a traversal during an active traversal.");i=!0;try{r(s,0,0)}finally{i=!1}},this.traverse=s=>{this.traverseBuffer((a,o,l)=>{if(o){const c=l*2,f=e[l+6],d=t[c+14];return s(a,o,new Float32Array(n,l*4,6),f,d)}else{const c=kc(l,e);return s(a,o,new Float32Array(n,l*4,6),c)}})}}},dh=new Jt,Kr=new Float32Array(6);class eS{constructor(){this._roots=null,this.primitiveBuffer=null,this.primitiveBufferStride=null}init(e){e={...lh,...e},"maxLeafSize"in e&&(console.warn('BVH: "maxLeafSize" option has been deprecated. Use "targetLeafSize", instead.'),e={...e,targetLeafSize:e.maxLeafSize}),Zx(this,e)}getRootRanges(){throw new Error("BVH: getRootRanges() not implemented")}writePrimitiveBounds(){throw new Error("BVH: writePrimitiveBounds() not implemented")}writePrimitiveRangeBounds(e,t,i,r){let s=1/0,a=1/0,o=1/0,l=-1/0,c=-1/0,f=-1/0;for(let d=e,u=e+t;d<u;d++){this.writePrimitiveBounds(d,Kr,0);const[h,g,x,m,p,v]=Kr;h<s&&(s=h),m>l&&(l=m),g<a&&(a=g),p>c&&(c=p),x<o&&(o=x),v>f&&(f=v)}return i[r+0]=s,i[r+1]=a,i[r+2]=o,i[r+3]=l,i[r+4]=c,i[r+5]=f,i}computePrimitiveBounds(e,t,i){const r=i.offset||0;for(let s=e,a=e+t;s<a;s++){this.writePrimitiveBounds(s,Kr,0);const[o,l,c,f,d,u]=Kr,h=(o+f)/2,g=(l+d)/2,x=(c+u)/2,m=(f-o)/2,p=(d-l)/2,v=(u-c)/2,M=(s-r)*6;i[M+0]=h,i[M+1]=m+(Math.abs(h)+m)*ao,i[M+2]=g,i[M+3]=p+(Math.abs(g)+p)*ao,i[M+4]=x,i[M+5]=v+(Math.abs(x)+v)*ao}return i}shiftPrimitiveOffsets(e){const t=this._indirectBuffer;if(t)for(let i=0,r=t.length;i<r;i++)t[i]+=e;else{const i=this._roots;for(let r=0;r<i.length;r++){const s=i[r],a=new Uint32Array(s),o=new Uint16Array(s),l=s.byteLength/cn;for(let c=0;c<l;c++){const f=St*c,d=2*f;_t(d,o)&&(a[f+6]+=e)}}}}traverse(e,t=0){Yc.setBVH(this,t),Yc.traverse(e),Yc.reset()}refit(){const e=this._roots;for(let t=0,i=e.length;t<i;t++){const r=e[t],s=new Uint32Array(r),a=new Uint16Array(r),o=new Float32Array(r),l=r.byteLength/cn;for(let c=l-1;c>=0;c--){const f=c*St,d=f*2;if(_t(d,a)){const h=Dt(f,s),g=Xt(d,a);this.writePrimitiveRangeBounds(h,g,Kr,0),o.set(Kr,f)}else{const h=At(f),g=wt(f,s);for(let x=0;x<3;x++){const m=o[h+x],p=o[h+x+3],v=o[g+x],M=o[g+x+3];o[f+x]=m<v?m:v,o[f+x+3]=p>M?p:M}}}}}getBoundingBox(e){return e.makeEmpty(),this._roots.forEach(i=>{pt(0,new Float32Array(i),dh),e.union(dh)}),e}shapecast(e){let{boundsTraverseOrder:t,intersectsBounds:i,intersectsRange:r,intersectsPrimitive:s,scratchPrimitive:a,iterate:o}=e;if(r&&s){const d=r;r=(u,h,g,x,m)=>d(u,h,g,x,m)?!0:o(u,h,this,s,g,x,a)}else r||(s?r=(d,u,h,g)=>o(d,u,this,s,h,g,a):r=(d,u,h)=>h);let l=!1,c=0;const f=this._roots;for(let d=0,u=f.length;d<u;d++){const h=f[d];if(l=Qx(this,d,i,r,t,c),l)break;c+=h.byteLength/cn}return l}bvhcast(e,t,i){let{intersectsRanges:r}=i;return jx(this,e,t,r)}}function tS(){return typeof SharedArrayBuffer<"u"}function Kc(n){return n.index?n.index.count:n.attributes.position.count}function fo(n){return Kc(n)/3}function nS(n,e=ArrayBuffer){return n>65535?new Uint32Array(new e(4*n)):new Uint16Array(new e(2*n))}function iS(n,e){if(!n.index){const t=n.attributes.position.count,i=e.useSharedArrayBuffer?SharedArrayBuffer:ArrayBuffer,r=nS(t,i);n.setIndex(new kt(r,1));for(let s=0;s<t;s++)r[s]=s}}function rS(n,e,t){const i=Kc(n)/t,r=e||n.drawRange,s=r.start/t,a=(r.start+r.count)/t,o=Math.max(0,s),l=Math.min(i,a)-o;return{offset:Math.floor(o),count:Math.floor(l)}}function sS(n,e){return n.groups.map(t=>({offset:t.start/e,count:t.count/e}))}function hh(n,e,t){const i=rS(n,e,t),r=sS(n,t);if(!r.length)return[i];const s=[],a=i.offset,o=i.offset+i.count,l=Kc(n)/t,c=[];for(const u of r){const{offset:h,count:g}=u,x=h,m=isFinite(g)?g:l-h,p=h+m;x<o&&p>a&&(c.push({pos:Math.max(a,x),isStart:!0}),c.push({pos:Math.min(o,p),isStart:!1}))}c.sort((u,h)=>u.pos!==h.pos?u.pos-h.pos:u.type==="end"?-1:1);let f=0,d=null;for(const u of c){const h=u.pos;f!==0&&h!==d&&s.push({offset:d,count:h-d}),f+=u.isStart?1:-1,d=h}return s}function aS(n,e){const t=n[n.length-1],i=t.offset+t.count>2**16,r=n.reduce((c,f)=>c+f.count,0),s=i?4:2,a=e?new SharedArrayBuffer(r*s):new ArrayBuffer(r*s),o=i?new Uint32Array(a):new Uint16Array(a);let l=0;for(let c=0;c<n.length;c++){const{offset:f,count:d}=n[c];for(let u=0;u<d;u++)o[l+u]=f+u;l+=d}return o}class oS extends eS{get indirect(){return!!this._indirectBuffer}get primitiveStride(){return null}get primitiveBufferStride(){return this.indirect?1:this.primitiveStride}set primitiveBufferStride(e){}get primitiveBuffer(){return this.indirect?this._indirectBuffer:this.geometry.index.array}set primitiveBuffer(e){}constructor(e,t={}){if(e.isBufferGeometry){if(e.index&&e.index.isInterleavedBufferAttribute)throw new Error("BVH: InterleavedBufferAttribute is not supported for the index attribute.")}else throw new Error("BVH: Only BufferGeometries are supported.");if(t.useSharedArrayBuffer&&!tS())throw new Error("BVH: SharedArrayBuffer is not available.");super(),this.geometry=e,this.resolvePrimitiveIndex=t.indirect?i=>this._indirectBuffer[i]:i=>i,this.primitiveBuffer=null,this.primitiveBufferStride=null,this._indirectBuffer=null,t={...lh,...t},t[Fc]||this.init(t)}init(e){const{geometry:t,primitiveStride:i}=this;if(e.indirect){const r=hh(t,e.range,i),s=aS(r,e.useSharedArrayBuffer);this._indirectBuffer=s}else iS(t,e);super.init(e),!t.boundingBox&&e.setBoundingBox&&(t.boundingBox=this.getBoundingBox(new Jt))}getRootRanges(e){return this.indirect?[{offset:0,count:this._indirectBuffer.length}]:hh(this.geometry,e,this.primitiveStride)}raycastObject3D(){throw new Error("BVH: raycastObject3D() not implemented")}}class mi{constructor(){this.min=1/0,this.max=-1/0}setFromPointsField(e,t){let i=1/0,r=-1/0;for(let s=0,a=e.length;s<a;s++){const l=e[s][t];i=l<i?l:i,r=l>r?l:r}this.min=i,this.max=r}setFromPoints(e,t){let i=1/0,r=-1/0;for(let s=0,a=t.length;s<a;s++){const o=t[s],l=e.dot(o);i=l<i?l:i,r=l>r?l:r}this.min=i,this.max=r}isSeparated(e){return this.min>e.max||e.min>this.max}}mi.prototype.setFromBox=(function(){const n=new N;return function(t,i){const r=i.min,s=i.max;let a=1/0,o=-1/0;for(let l=0;l<=1;l++)for(let c=0;c<=1;c++)for(let f=0;f<=1;f++){n.x=r.x*l+s.x*(1-l),n.y=r.y*c+s.y*(1-c),n.z=r.z*f+s.z*(1-f);const d=t.dot(n);a=Math.min(d,a),o=Math.max(d,o)}this.min=a,this.max=o}})();const lS=(function(){const n=new N,e=new N,t=new N;return function(r,s,a){const o=r.start,l=n,c=s.start,f=e;t.subVectors(o,c),n.subVectors(r.end,r.start),e.subVectors(s.end,s.start);const d=t.dot(f),u=f.dot(l),h=f.dot(f),g=t.dot(l),m=l.dot(l)*h-u*u;let p,v;m!==0?p=(d*u-g*h)/m:p=0,v=(d+p*u)/h,a.x=p,a.y=v}})(),Zc=(function(){const n=new He,e=new N,t=new N;return function(r,s,a,o){lS(r,s,n);let l=n.x,c=n.y;if(l>=0&&l<=1&&c>=0&&c<=1){r.at(l,a),s.at(c,o);return}else if(l>=0&&l<=1){c<0?s.at(0,o):s.at(1,o),r.closestPointToPoint(o,!0,a);return}else if(c>=0&&c<=1){l<0?r.at(0,a):r.at(1,a),s.closestPointToPoint(a,!0,o);return}else{let f;l<0?f=r.start:f=r.end;let d;c<0?d=s.start:d=s.end;const u=e,h=t;if(r.closestPointToPoint(d,!0,e),s.closestPointToPoint(f,!0,t),u.distanceToSquared(d)<=h.distanceToSquared(f)){a.copy(u),o.copy(d);return}else{a.copy(f),o.copy(h);return}}}})(),cS=(function(){const n=new N,e=new N,t=new Gn,i=new pi;return function(s,a){const{radius:o,center:l}=s,{a:c,b:f,c:d}=a;if(i.start=c,i.end=f,i.closestPointToPoint(l,!0,n).distanceTo(l)<=o||(i.start=c,i.end=d,i.closestPointToPoint(l,!0,n).distanceTo(l)<=o)||(i.start=f,i.end=d,i.closestPointToPoint(l,!0,n).distanceTo(l)<=o))return!0;const x=a.getPlane(t);if(Math.abs(x.distanceToPoint(l))<=o){const p=x.projectPoint(l,e);if(a.containsPoint(p))return!0}return!1}})(),uS=["x","y","z"],gi=1e-15,ph=gi*gi;function _n(n){return Math.abs(n)<gi}class Un extends Bt{constructor(...e){super(...e),this.isExtendedTriangle=!0,this.satAxes=new Array(4).fill().map(()=>new N),this.satBounds=new Array(4).fill().map(()=>new mi),this.points=[this.a,this.b,this.c],this.plane=new Gn,this.isDegenerateIntoSegment=!1,this.isDegenerateIntoPoint=!1,this.degenerateSegment=new pi,this.needsUpdate=!0}intersectsSphere(e){return cS(e,this)}update(){const e=this.a,t=this.b,i=this.c,r=this.points,s=this.satAxes,a=this.satBounds,o=s[0],l=a[0];this.getNormal(o),l.setFromPoints(o,r);const c=s[1],f=a[1];c.subVectors(e,t),f.setFromPoints(c,r);const d=s[2],u=a[2];d.subVectors(t,i),u.setFromPoints(d,r);const h=s[3],g=a[3];h.subVectors(i,e),g.setFromPoints(h,r);const x=c.length(),m=d.length(),p=h.length();this.isDegenerateIntoPoint=!1,this.isDegenerateIntoSegment=!1,x<gi?m<gi||p<gi?this.isDegenerateIntoPoint=!0:(this.isDegenerateIntoSegment=!0,this.degenerateSegment.start.copy(e),this.degenerateSegment.end.copy(i)):m<gi?p<gi?this.isDegenerateIntoPoint=!0:(this.isDegenerateIntoSegment=!0,this.degenerateSegment.start.copy(t),this.degenerateSegment.end.copy(e)):p<gi&&(this.isDegenerateIntoSegment=!0,this.degenerateSegment.start.copy(i),this.degenerateSegment.end.copy(t)),this.plane.setFromNormalAndCoplanarPoint(o,e),this.needsUpdate=!1}}Un.prototype.closestPointToSegment=(function(){const n=new N,e=new N,t=new pi;return function(r,s=null,a=null){this.needsUpdate&&this.update();const{start:o,end:l}=r,c=this.points;let f,d=1/0;const u=this.plane.distanceToPoint(o),h=this.plane.distanceToPoint(l);if(u*h<0&&this.plane.intersectLine(r,n)!==null&&this.containsPoint(n))return s&&s.copy(n),a&&a.copy(n),0;for(let g=0;g<3;g++){const x=(g+1)%3;t.start.copy(c[g]),t.end.copy(c[x]),Zc(t,r,n,e),f=n.distanceToSquared(e),f<d&&(d=f,s&&s.copy(n),a&&a.copy(e))}return this.closestPointToPoint(o,n),f=o.distanceToSquared(n),f<d&&(d=f,s&&s.copy(n),a&&a.copy(o)),this.closestPointToPoint(l,n),f=l.distanceToSquared(n),f<d&&(d=f,s&&s.copy(n),a&&a.copy(l)),Math.sqrt(d)}})(),Un.prototype.intersectsTriangle=(function(){const n=new Un,e=new mi,t=new mi,i=new N,r=new N,s=new N,a=new N,o=new pi,l=new pi,c=new N,f=new He,d=new He;function u(M,S,b,w){const _=i;!M.isDegenerateIntoPoint&&!M.isDegenerateIntoSegment?_.copy(M.plane.normal):_.copy(S.plane.normal);const y=M.satBounds,I=M.satAxes;for(let D=1;D<4;D++){const O=y[D],L=I[D];if(e.setFromPoints(L,S.points),O.isSeparated(e)||(a.copy(_).cross(L),e.setFromPoints(a,M.points),t.setFromPoints(a,S.points),e.isSeparated(t)))return!1}const R=S.satBounds,P=S.satAxes;for(let D=1;D<4;D++){const O=R[D],L=P[D];if(e.setFromPoints(L,M.points),O.isSeparated(e)||(a.crossVectors(_,L),e.setFromPoints(a,M.points),t.setFromPoints(a,S.points),e.isSeparated(t)))return!1}return b&&(w||console.warn("ExtendedTriangle.intersectsTriangle: Triangles are coplanar which does not support an output edge. Setting edge to 0, 0, 0."),b.start.set(0,0,0),b.end.set(0,0,0)),!0}function h(M,S,b,w,_,y,I,R,P,D,O){let L=I/(I-R);D.x=w+(_-w)*L,O.start.subVectors(S,M).multiplyScalar(L).add(M),L=I/(I-P),D.y=w+(y-w)*L,O.end.subVectors(b,M).multiplyScalar(L).add(M)}function g(M,S,b,w,_,y,I,R,P,D,O){if(_>0)h(M.c,M.a,M.b,w,S,b,P,I,R,D,O);else if(y>0)h(M.b,M.a,M.c,b,S,w,R,I,P,D,O);else if(R*P>0||I!=0)h(M.a,M.b,M.c,S,b,w,I,R,P,D,O);else if(R!=0)h(M.b,M.a,M.c,b,S,w,R,I,P,D,O);else if(P!=0)h(M.c,M.a,M.b,w,S,b,P,I,R,D,O);else return!0;return!1}function x(M,S,b,w){const _=S.degenerateSegment,y=M.plane.distanceToPoint(_.start),I=M.plane.distanceToPoint(_.end);return _n(y)?_n(I)?u(M,S,b,w):(b&&(b.start.copy(_.start),b.end.copy(_.start)),M.containsPoint(_.start)):_n(I)?(b&&(b.start.copy(_.end),b.end.copy(_.end)),M.containsPoint(_.end)):M.plane.intersectLine(_,i)!=null?(b&&(b.start.copy(i),b.end.copy(i)),M.containsPoint(i)):!1}function m(M,S,b){const w=S.a;return _n(M.plane.distanceToPoint(w))&&M.containsPoint(w)?(b&&(b.start.copy(w),b.end.copy(w)),!0):!1}function p(M,S,b){const w=M.degenerateSegment,_=S.a;return w.closestPointToPoint(_,!0,i),_.distanceToSquared(i)<ph?(b&&(b.start.copy(_),b.end.copy(_)),!0):!1}function v(M,S,b,w){if(M.isDegenerateIntoSegment)if(S.isDegenerateIntoSegment){const _=M.degenerateSegment,y=S.degenerateSegment,I=r,R=s;_.delta(I),y.delta(R);const P=i.subVectors(y.start,_.start),D=I.x*R.y-I.y*R.x;if(_n(D))return!1;const O=(P.x*R.y-P.y*R.x)/D,L=-(I.x*P.y-I.y*P.x)/D;if(O<0||O>1||L<0||L>1)return!1;const k=_.start.z+I.z*O,V=y.start.z+R.z*L;return _n(k-V)?(b&&(b.start.copy(_.start).addScaledVector(I,O),b.end.copy(_.start).addScaledVector(I,O)),!0):!1}else return S.isDegenerateIntoPoint?p(M,S,b):x(S,M,b,w);else{if(M.isDegenerateIntoPoint)return S.isDegenerateIntoPoint?S.a.distanceToSquared(M.a)<ph?(b&&(b.start.copy(M.a),b.end.copy(M.a)),!0):!1:S.isDegenerateIntoSegment?p(S,M,b):m(S,M,b);if(S.isDegenerateIntoPoint)return m(M,S,b);if(S.isDegenerateIntoSegment)return x(M,S,b,w)}}return function(S,b=null,w=!1){this.needsUpdate&&this.update(),S.isExtendedTriangle?S.needsUpdate&&S.update():(n.copy(S),n.update(),S=n);const _=v(this,S,b,w);if(_!==void 0)return _;const y=this.plane,I=S.plane;let R=I.distanceToPoint(this.a),P=I.distanceToPoint(this.b),D=I.distanceToPoint(this.c);_n(R)&&(R=0),_n(P)&&(P=0),_n(D)&&(D=0);const O=R*P,L=R*D;if(O>0&&L>0)return!1;let k=y.distanceToPoint(S.a),V=y.distanceToPoint(S.b),W=y.distanceToPoint(S.c);_n(k)&&(k=0),_n(V)&&(V=0),_n(W)&&(W=0);const te=k*V,$=k*W;if(te>0&&$>0)return!1;r.copy(y.normal),s.copy(I.normal);const j=r.cross(s);let ee=0,Se=Math.abs(j.x);const De=Math.abs(j.y);De>Se&&(Se=De,ee=1),Math.abs(j.z)>Se&&(ee=2);const fe=uS[ee],xe=this.a[fe],we=this.b[fe],ge=this.c[fe],Ie=S.a[fe],mt=S.b[fe],Re=S.c[fe];if(g(this,xe,we,ge,O,L,R,P,D,f,o))return u(this,S,b,w);if(g(S,Ie,mt,Re,te,$,k,V,W,d,l))return u(this,S,b,w);if(f.y<f.x){const $e=f.y;f.y=f.x,f.x=$e,c.copy(o.start),o.start.copy(o.end),o.end.copy(c)}if(d.y<d.x){const $e=d.y;d.y=d.x,d.x=$e,c.copy(l.start),l.start.copy(l.end),l.end.copy(c)}return f.y<d.x||d.y<f.x?!1:(b&&(d.x>f.x?b.start.copy(l.start):b.start.copy(o.start),d.y<f.y?b.end.copy(l.end):b.end.copy(o.end)),!0)}})(),Un.prototype.distanceToPoint=(function(){const n=new N;return function(t){return this.closestPointToPoint(t,n),t.distanceTo(n)}})(),Un.prototype.distanceToTriangle=(function(){const n=new N,e=new N,t=["a","b","c"],i=new pi,r=new pi;return function(a,o=null,l=null){const c=o||l?i:null;if(this.intersectsTriangle(a,c,!0))return(o||l)&&(o&&c.getCenter(o),l&&c.getCenter(l)),0;let f=1/0;for(let d=0;d<3;d++){let u;const h=t[d],g=a[h];this.closestPointToPoint(g,n),u=g.distanceToSquared(n),u<f&&(f=u,o&&o.copy(n),l&&l.copy(g));const x=this[h];a.closestPointToPoint(x,n),u=x.distanceToSquared(n),u<f&&(f=u,o&&o.copy(x),l&&l.copy(n))}for(let d=0;d<3;d++){const u=t[d],h=t[(d+1)%3];i.set(this[u],this[h]);for(let g=0;g<3;g++){const x=t[g],m=t[(g+1)%3];r.set(a[x],a[m]),Zc(i,r,n,e);const p=n.distanceToSquared(e);p<f&&(f=p,o&&o.copy(n),l&&l.copy(e))}}return Math.sqrt(f)}})();class jt{constructor(e,t,i){this.isOrientedBox=!0,this.min=new N,this.max=new N,this.matrix=new je,this.invMatrix=new je,this.points=new Array(8).fill().map(()=>new N),this.satAxes=new Array(3).fill().map(()=>new N),this.satBounds=new Array(3).fill().map(()=>new mi),this.alignedSatBounds=new Array(3).fill().map(()=>new mi),this.needsUpdate=!1,e&&this.min.copy(e),t&&this.max.copy(t),i&&this.matrix.copy(i)}set(e,t,i){this.min.copy(e),this.max.copy(t),this.matrix.copy(i),this.needsUpdate=!0}copy(e){this.min.copy(e.min),this.max.copy(e.max),this.matrix.copy(e.matrix),this.needsUpdate=!0}}jt.prototype.update=(function(){return function(){const e=this.matrix,t=this.min,i=this.max,r=this.points;for(let c=0;c<=1;c++)for(let f=0;f<=1;f++)for(let d=0;d<=1;d++){const u=1*c|2*f|4*d,h=r[u];h.x=c?i.x:t.x,h.y=f?i.y:t.y,h.z=d?i.z:t.z,h.applyMatrix4(e)}const s=this.satBounds,a=this.satAxes,o=r[0];for(let c=0;c<3;c++){const f=a[c],d=s[c],u=1<<c,h=r[u];f.subVectors(o,h),d.setFromPoints(f,r)}const l=this.alignedSatBounds;l[0].setFromPointsField(r,"x"),l[1].setFromPointsField(r,"y"),l[2].setFromPointsField(r,"z"),this.invMatrix.copy(this.matrix).invert(),this.needsUpdate=!1}})(),jt.prototype.intersectsBox=(function(){const n=new mi;return function(t){this.needsUpdate&&this.update();const i=t.min,r=t.max,s=this.satBounds,a=this.satAxes,o=this.alignedSatBounds;if(n.min=i.x,n.max=r.x,o[0].isSeparated(n)||(n.min=i.y,n.max=r.y,o[1].isSeparated(n))||(n.min=i.z,n.max=r.z,o[2].isSeparated(n)))return!1;for(let l=0;l<3;l++){const c=a[l],f=s[l];if(n.setFromBox(c,t),f.isSeparated(n))return!1}return!0}})(),jt.prototype.intersectsTriangle=(function(){const n=new Un,e=new Array(3),t=new mi,i=new mi,r=new N;return function(a){this.needsUpdate&&this.update(),a.isExtendedTriangle?a.needsUpdate&&a.update():(n.copy(a),n.update(),a=n);const o=this.satBounds,l=this.satAxes;e[0]=a.a,e[1]=a.b,e[2]=a.c;for(let u=0;u<3;u++){const h=o[u],g=l[u];if(t.setFromPoints(g,e),h.isSeparated(t))return!1}const c=a.satBounds,f=a.satAxes,d=this.points;for(let u=0;u<3;u++){const h=c[u],g=f[u];if(t.setFromPoints(g,d),h.isSeparated(t))return!1}for(let u=0;u<3;u++){const h=l[u];for(let g=0;g<4;g++){const x=f[g];if(r.crossVectors(h,x),t.setFromPoints(r,e),i.setFromPoints(r,d),t.isSeparated(i))return!1}}return!0}})(),jt.prototype.closestPointToPoint=(function(){return function(e,t){return this.needsUpdate&&this.update(),t.copy(e).applyMatrix4(this.invMatrix).clamp(this.min,this.max).applyMatrix4(this.matrix),t}})(),jt.prototype.distanceToPoint=(function(){const n=new N;return function(t){return this.closestPointToPoint(t,n),t.distanceTo(n)}})(),jt.prototype.distanceToBox=(function(){const n=["x","y","z"],e=new Array(12).fill().map(()=>new pi),t=new Array(12).fill().map(()=>new pi),i=new N,r=new N;return function(a,o=0,l=null,c=null){if(this.needsUpdate&&this.update(),this.intersectsBox(a))return(l||c)&&(a.getCenter(r),this.closestPointToPoint(r,i),a.closestPointToPoint(i,r),l&&l.copy(i),c&&c.copy(r)),0;const f=o*o,d=a.min,u=a.max,h=this.points;let g=1/0;for(let m=0;m<8;m++){const p=h[m];r.copy(p).clamp(d,u);const v=p.distanceToSquared(r);if(v<g&&(g=v,l&&l.copy(p),c&&c.copy(r),v<f))return Math.sqrt(v)}let x=0;for(let m=0;m<3;m++)for(let p=0;p<=1;p++)for(let v=0;v<=1;v++){const M=(m+1)%3,S=(m+2)%3,b=p<<M|v<<S,w=1<<m|p<<M|v<<S,_=h[b],y=h[w];e[x].set(_,y);const R=n[m],P=n[M],D=n[S],O=t[x],L=O.start,k=O.end;L[R]=d[R],L[P]=p?d[P]:u[P],L[D]=v?d[D]:u[D],k[R]=u[R],k[P]=p?d[P]:u[P],k[D]=v?d[D]:u[D],x++}for(let m=0;m<=1;m++)for(let p=0;p<=1;p++)for(let v=0;v<=1;v++){r.x=m?u.x:d.x,r.y=p?u.y:d.y,r.z=v?u.z:d.z,this.closestPointToPoint(r,i);const M=r.distanceToSquared(i);if(M<g&&(g=M,l&&l.copy(i),c&&c.copy(r),M<f))return Math.sqrt(M)}for(let m=0;m<12;m++){const p=e[m];for(let v=0;v<12;v++){const M=t[v];Zc(p,M,i,r);const S=i.distanceToSquared(r);if(S<g&&(g=S,l&&l.copy(i),c&&c.copy(r),S<f))return Math.sqrt(S)}}return Math.sqrt(g)}})();class fS extends Vc{constructor(){super(()=>new Un)}}const vn=new fS,ks=new N,Jc=new N;function dS(n,e,t={},i=0,r=1/0){const s=i*i,a=r*r;let o=1/0,l=null;if(n.shapecast({boundsTraverseOrder:f=>(ks.copy(e).clamp(f.min,f.max),ks.distanceToSquared(e)),intersectsBounds:(f,d,u)=>u<o&&u<a,intersectsTriangle:(f,d)=>{f.closestPointToPoint(e,ks);const u=e.distanceToSquared(ks);return u<o&&(Jc.copy(ks),o=u,l=d),u<s}}),o===1/0)return null;const c=Math.sqrt(o);return t.point?t.point.copy(Jc):t.point=Jc.clone(),t.distance=c,t.faceIndex=l,t}const ho=parseInt(Ms)>=169,hS=parseInt(Ms)<=161,ir=new N,rr=new N,sr=new N,po=new He,mo=new He,go=new He,mh=new N,gh=new N,_h=new N,zs=new N;function pS(n,e,t,i,r,s,a,o){let l;if(s===Kt?l=n.intersectTriangle(i,t,e,!0,r):l=n.intersectTriangle(e,t,i,s!==an,r),l===null)return null;const c=n.origin.distanceTo(r);return c<a||c>o?null:{distance:c,point:r.clone()}}function vh(n,e,t,i,r,s,a,o,l,c,f){ir.fromBufferAttribute(e,s),rr.fromBufferAttribute(e,a),sr.fromBufferAttribute(e,o);const d=pS(n,ir,rr,sr,zs,l,c,f);if(d){if(i){po.fromBufferAttribute(i,s),mo.fromBufferAttribute(i,a),go.fromBufferAttribute(i,o),d.uv=new He;const h=Bt.getInterpolation(zs,ir,rr,sr,po,mo,go,d.uv);ho||(d.uv=h)}if(r){po.fromBufferAttribute(r,s),mo.fromBufferAttribute(r,a),go.fromBufferAttribute(r,o),d.uv1=new He;const h=Bt.getInterpolation(zs,ir,rr,sr,po,mo,go,d.uv1);ho||(d.uv1=h),hS&&(d.uv2=d.uv1)}if(t){mh.fromBufferAttribute(t,s),gh.fromBufferAttribute(t,a),_h.fromBufferAttribute(t,o),d.normal=new N;const h=Bt.getInterpolation(zs,ir,rr,sr,mh,gh,_h,d.normal);d.normal.dot(n.direction)>0&&d.normal.multiplyScalar(-1),ho||(d.normal=h)}const u={a:s,b:a,c:o,normal:new N,materialIndex:0};if(Bt.getNormal(ir,rr,sr,u.normal),d.face=u,d.faceIndex=s,ho){const h=new N;Bt.getBarycoord(zs,ir,rr,sr,h),d.barycoord=h}}return d}function xh(n){return n&&n.isMaterial?n.side:n}function _o(n,e,t,i,r,s,a){const o=i*3;let l=o+0,c=o+1,f=o+2;const{index:d,groups:u}=n;n.index&&(l=d.getX(l),c=d.getX(c),f=d.getX(f));const{position:h,normal:g,uv:x,uv1:m}=n.attributes;if(Array.isArray(e)){const p=i*3;for(let v=0,M=u.length;v<M;v++){const{start:S,count:b,materialIndex:w}=u[v];if(p>=S&&p<S+b){const _=xh(e[w]),y=vh(t,h,g,x,m,l,c,f,_,s,a);if(y)if(y.faceIndex=i,y.face.materialIndex=w,r)r.push(y);else return y}}}else{const p=xh(e),v=vh(t,h,g,x,m,l,c,f,p,s,a);if(v)if(v.faceIndex=i,v.face.materialIndex=0,r)r.push(v);else return v}return null}function Mt(n,e,t,i){const r=n.a,s=n.b,a=n.c;let o=e,l=e+1,c=e+2;t&&(o=t.getX(o),l=t.getX(l),c=t.getX(c)),r.x=i.getX(o),r.y=i.getY(o),r.z=i.getZ(o),s.x=i.getX(l),s.y=i.getY(l),s.z=i.getZ(l),a.x=i.getX(c),a.y=i.getY(c),a.z=i.getZ(c)}function mS(n,e,t,i,r,s,a,o){const{geometry:l,_indirectBuffer:c}=n;for(let f=i,d=i+r;f<d;f++)_o(l,e,t,f,s,a,o)}function gS(n,e,t,i,r,s,a){const{geometry:o,_indirectBuffer:l}=n;let c=1/0,f=null;for(let d=i,u=i+r;d<u;d++){let h;h=_o(o,e,t,d,null,s,a),h&&h.distance<c&&(f=h,c=h.distance)}return f}function _S(n,e,t,i,r,s,a){const{geometry:o}=t,{index:l}=o,c=o.attributes.position;for(let f=n,d=e+n;f<d;f++){let u;if(u=f,Mt(a,u*3,l,c),a.needsUpdate=!0,i(a,u,r,s))return!0}return!1}function vS(n,e=null){e&&Array.isArray(e)&&(e=new Set(e));const t=n.geometry,i=t.index?t.index.array:null,r=t.attributes.position;let s,a,o,l,c=0;const f=n._roots;for(let u=0,h=f.length;u<h;u++)s=f[u],a=new Uint32Array(s),o=new Uint16Array(s),l=new Float32Array(s),d(0,c),c+=s.byteLength;function d(u,h,g=!1){const x=u*2;if(_t(x,o)){const m=Dt(u,a),p=Xt(x,o);let v=1/0,M=1/0,S=1/0,b=-1/0,w=-1/0,_=-1/0;for(let y=3*m,I=3*(m+p);y<I;y++){let R=i[y];const P=r.getX(R),D=r.getY(R),O=r.getZ(R);P<v&&(v=P),P>b&&(b=P),D<M&&(M=D),D>w&&(w=D),O<S&&(S=O),O>_&&(_=O)}return l[u+0]!==v||l[u+1]!==M||l[u+2]!==S||l[u+3]!==b||l[u+4]!==w||l[u+5]!==_?(l[u+0]=v,l[u+1]=M,l[u+2]=S,l[u+3]=b,l[u+4]=w,l[u+5]=_,!0):!1}else{const m=At(u),p=wt(u,a);let v=g,M=!1,S=!1;if(e){if(!v){const R=m/St+h/cn,P=p/St+h/cn;M=e.has(R),S=e.has(P),v=!M&&!S}}else M=!0,S=!0;const b=v||M,w=v||S;let _=!1;b&&(_=d(m,h,v));let y=!1;w&&(y=d(p,h,v));const I=_||y;if(I)for(let R=0;R<3;R++){const P=m+R,D=p+R,O=l[P],L=l[P+3],k=l[D],V=l[D+3];l[u+R]=O<k?O:k,l[u+R+3]=L>V?L:V}return I}}}function xn(n,e,t,i,r){let s,a,o,l,c,f;const d=1/t.direction.x,u=1/t.direction.y,h=1/t.direction.z,g=t.origin.x,x=t.origin.y,m=t.origin.z;let p=e[n],v=e[n+3],M=e[n+1],S=e[n+3+1],b=e[n+2],w=e[n+3+2];return d>=0?(s=(p-g)*d,a=(v-g)*d):(s=(v-g)*d,a=(p-g)*d),u>=0?(o=(M-x)*u,l=(S-x)*u):(o=(S-x)*u,l=(M-x)*u),s>l||o>a||((o>s||isNaN(s))&&(s=o),(l<a||isNaN(a))&&(a=l),h>=0?(c=(b-m)*h,f=(w-m)*h):(c=(w-m)*h,f=(b-m)*h),s>f||c>a)?!1:((c>s||s!==s)&&(s=c),(f<a||a!==a)&&(a=f),s<=r&&a>=i)}function xS(n,e,t,i,r,s,a,o){const{geometry:l,_indirectBuffer:c}=n;for(let f=i,d=i+r;f<d;f++){let u=c?c[f]:f;_o(l,e,t,u,s,a,o)}}function SS(n,e,t,i,r,s,a){const{geometry:o,_indirectBuffer:l}=n;let c=1/0,f=null;for(let d=i,u=i+r;d<u;d++){let h;h=_o(o,e,t,l?l[d]:d,null,s,a),h&&h.distance<c&&(f=h,c=h.distance)}return f}function MS(n,e,t,i,r,s,a){const{geometry:o}=t,{index:l}=o,c=o.attributes.position;for(let f=n,d=e+n;f<d;f++){let u;if(u=t.resolveTriangleIndex(f),Mt(a,u*3,l,c),a.needsUpdate=!0,i(a,u,r,s))return!0}return!1}function yS(n,e,t,i,r,s,a){tt.setBuffer(n._roots[e]),xn(0,tt.float32Array,i,s,a)&&Qc(0,n,t,i,r,s,a),tt.clearBuffer()}function Qc(n,e,t,i,r,s,a){const{float32Array:o,uint16Array:l,uint32Array:c}=tt,f=n*2;if(_t(f,l)){const u=Dt(n,c),h=Xt(f,l);mS(e,t,i,u,h,r,s,a)}else{const u=At(n);xn(u,o,i,s,a)&&Qc(u,e,t,i,r,s,a);const h=wt(n,c);xn(h,o,i,s,a)&&Qc(h,e,t,i,r,s,a)}}const bS=["x","y","z"];function ES(n,e,t,i,r,s){tt.setBuffer(n._roots[e]);let a=null;return xn(0,tt.float32Array,i,r,s)&&(a=jc(0,n,t,i,r,s)),tt.clearBuffer(),a}function jc(n,e,t,i,r,s){const{float32Array:a,uint16Array:o,uint32Array:l}=tt;let c=n*2;if(_t(c,o)){const d=Dt(n,l),u=Xt(c,o);return gS(e,t,i,d,u,r,s)}else{const d=kc(n,l),u=bS[d],g=i.direction[u]>=0;let x,m;g?(x=At(n),m=wt(n,l)):(x=wt(n,l),m=At(n));const v=xn(x,a,i,r,s)?jc(x,e,t,i,r,s):null;if(v){const b=v.point[u];if(g?b<=a[m+d]:b>=a[m+d+3])return v}const S=xn(m,a,i,r,s)?jc(m,e,t,i,r,s):null;return v&&S?v.distance<=S.distance?v:S:v||S||null}}const vo=new Jt,Zr=new Un,Jr=new Un,Hs=new je,Sh=new jt,xo=new jt;function TS(n,e,t,i){tt.setBuffer(n._roots[e]);const r=eu(0,n,t,i);return tt.clearBuffer(),r}function eu(n,e,t,i,r=null){const{float32Array:s,uint16Array:a,uint32Array:o}=tt;let l=n*2;if(r===null&&(t.boundingBox||t.computeBoundingBox(),Sh.set(t.boundingBox.min,t.boundingBox.max,i),r=Sh),_t(l,a)){const f=e.geometry,d=f.index,u=f.attributes.position,h=t.index,g=t.attributes.position,x=Dt(n,o),m=Xt(l,a);if(Hs.copy(i).invert(),t.boundsTree)return pt(n,s,xo),xo.matrix.copy(Hs),xo.needsUpdate=!0,t.boundsTree.shapecast({intersectsBounds:v=>xo.intersectsBox(v),intersectsTriangle:v=>{v.a.applyMatrix4(i),v.b.applyMatrix4(i),v.c.applyMatrix4(i),v.needsUpdate=!0;for(let M=x*3,S=(m+x)*3;M<S;M+=3)if(Mt(Jr,M,d,u),Jr.needsUpdate=!0,v.intersectsTriangle(Jr))return!0;return!1}});{const p=fo(t);for(let v=x*3,M=(m+x)*3;v<M;v+=3){Mt(Zr,v,d,u),Zr.a.applyMatrix4(Hs),Zr.b.applyMatrix4(Hs),Zr.c.applyMatrix4(Hs),Zr.needsUpdate=!0;for(let S=0,b=p*3;S<b;S+=3)if(Mt(Jr,S,h,g),Jr.needsUpdate=!0,Zr.intersectsTriangle(Jr))return!0}}}else{const f=At(n),d=wt(n,o);return pt(f,s,vo),!!(r.intersectsBox(vo)&&eu(f,e,t,i,r)||(pt(d,s,vo),r.intersectsBox(vo)&&eu(d,e,t,i,r)))}}const So=new je,tu=new jt,Gs=new jt,AS=new N,wS=new N,RS=new N,CS=new N;function PS(n,e,t,i={},r={},s=0,a=1/0){e.boundingBox||e.computeBoundingBox(),tu.set(e.boundingBox.min,e.boundingBox.max,t),tu.needsUpdate=!0;const o=n.geometry,l=o.attributes.position,c=o.index,f=e.attributes.position,d=e.index,u=vn.getPrimitive(),h=vn.getPrimitive();let g=AS,x=wS,m=null,p=null;r&&(m=RS,p=CS);let v=1/0,M=null,S=null;return So.copy(t).invert(),Gs.matrix.copy(So),n.shapecast({boundsTraverseOrder:b=>tu.distanceToBox(b),intersectsBounds:(b,w,_)=>_<v&&_<a?(w&&(Gs.min.copy(b.min),Gs.max.copy(b.max),Gs.needsUpdate=!0),!0):!1,intersectsRange:(b,w)=>{if(e.boundsTree)return e.boundsTree.shapecast({boundsTraverseOrder:y=>Gs.distanceToBox(y),intersectsBounds:(y,I,R)=>R<v&&R<a,intersectsRange:(y,I)=>{for(let R=y,P=y+I;R<P;R++){Mt(h,3*R,d,f),h.a.applyMatrix4(t),h.b.applyMatrix4(t),h.c.applyMatrix4(t),h.needsUpdate=!0;for(let D=b,O=b+w;D<O;D++){Mt(u,3*D,c,l),u.needsUpdate=!0;const L=u.distanceToTriangle(h,g,m);if(L<v&&(x.copy(g),p&&p.copy(m),v=L,M=D,S=R),L<s)return!0}}}});{const _=fo(e);for(let y=0,I=_;y<I;y++){Mt(h,3*y,d,f),h.a.applyMatrix4(t),h.b.applyMatrix4(t),h.c.applyMatrix4(t),h.needsUpdate=!0;for(let R=b,P=b+w;R<P;R++){Mt(u,3*R,c,l),u.needsUpdate=!0;const D=u.distanceToTriangle(h,g,m);if(D<v&&(x.copy(g),p&&p.copy(m),v=D,M=R,S=y),D<s)return!0}}}}}),vn.releasePrimitive(u),vn.releasePrimitive(h),v===1/0?null:(i.point?i.point.copy(x):i.point=x.clone(),i.distance=v,i.faceIndex=M,r&&(r.point?r.point.copy(p):r.point=p.clone(),r.point.applyMatrix4(So),x.applyMatrix4(So),r.distance=x.sub(r.point).length(),r.faceIndex=S),i)}function LS(n,e=null){e&&Array.isArray(e)&&(e=new Set(e));const t=n.geometry,i=t.index?t.index.array:null,r=t.attributes.position;let s,a,o,l,c=0;const f=n._roots;for(let u=0,h=f.length;u<h;u++)s=f[u],a=new Uint32Array(s),o=new Uint16Array(s),l=new Float32Array(s),d(0,c),c+=s.byteLength;function d(u,h,g=!1){const x=u*2;if(_t(x,o)){const m=Dt(u,a),p=Xt(x,o);let v=1/0,M=1/0,S=1/0,b=-1/0,w=-1/0,_=-1/0;for(let y=m,I=m+p;y<I;y++){const R=3*n.resolveTriangleIndex(y);for(let P=0;P<3;P++){let D=R+P;D=i?i[D]:D;const O=r.getX(D),L=r.getY(D),k=r.getZ(D);O<v&&(v=O),O>b&&(b=O),L<M&&(M=L),L>w&&(w=L),k<S&&(S=k),k>_&&(_=k)}}return l[u+0]!==v||l[u+1]!==M||l[u+2]!==S||l[u+3]!==b||l[u+4]!==w||l[u+5]!==_?(l[u+0]=v,l[u+1]=M,l[u+2]=S,l[u+3]=b,l[u+4]=w,l[u+5]=_,!0):!1}else{const m=At(u),p=wt(u,a);let v=g,M=!1,S=!1;if(e){if(!v){const R=m/St+h/cn,P=p/St+h/cn;M=e.has(R),S=e.has(P),v=!M&&!S}}else M=!0,S=!0;const b=v||M,w=v||S;let _=!1;b&&(_=d(m,h,v));let y=!1;w&&(y=d(p,h,v));const I=_||y;if(I)for(let R=0;R<3;R++){const P=m+R,D=p+R,O=l[P],L=l[P+3],k=l[D],V=l[D+3];l[u+R]=O<k?O:k,l[u+R+3]=L>V?L:V}return I}}}function DS(n,e,t,i,r,s,a){tt.setBuffer(n._roots[e]),xn(0,tt.float32Array,i,s,a)&&nu(0,n,t,i,r,s,a),tt.clearBuffer()}function nu(n,e,t,i,r,s,a){const{float32Array:o,uint16Array:l,uint32Array:c}=tt,f=n*2;if(_t(f,l)){const u=Dt(n,c),h=Xt(f,l);xS(e,t,i,u,h,r,s,a)}else{const u=At(n);xn(u,o,i,s,a)&&nu(u,e,t,i,r,s,a);const h=wt(n,c);xn(h,o,i,s,a)&&nu(h,e,t,i,r,s,a)}}const IS=["x","y","z"];function NS(n,e,t,i,r,s){tt.setBuffer(n._roots[e]);let a=null;return xn(0,tt.float32Array,i,r,s)&&(a=iu(0,n,t,i,r,s)),tt.clearBuffer(),a}function iu(n,e,t,i,r,s){const{float32Array:a,uint16Array:o,uint32Array:l}=tt;let c=n*2;if(_t(c,o)){const d=Dt(n,l),u=Xt(c,o);return SS(e,t,i,d,u,r,s)}else{const d=kc(n,l),u=IS[d],g=i.direction[u]>=0;let x,m;g?(x=At(n),m=wt(n,l)):(x=wt(n,l),m=At(n));const v=xn(x,a,i,r,s)?iu(x,e,t,i,r,s):null;if(v){const b=v.point[u];if(g?b<=a[m+d]:b>=a[m+d+3])return v}const S=xn(m,a,i,r,s)?iu(m,e,t,i,r,s):null;return v&&S?v.distance<=S.distance?v:S:v||S||null}}const Mo=new Jt,Qr=new Un,jr=new Un,Vs=new je,Mh=new jt,yo=new jt;function US(n,e,t,i){tt.setBuffer(n._roots[e]);const r=ru(0,n,t,i);return tt.clearBuffer(),r}function ru(n,e,t,i,r=null){const{float32Array:s,uint16Array:a,uint32Array:o}=tt;let l=n*2;if(r===null&&(t.boundingBox||t.computeBoundingBox(),Mh.set(t.boundingBox.min,t.boundingBox.max,i),r=Mh),_t(l,a)){const f=e.geometry,d=f.index,u=f.attributes.position,h=t.index,g=t.attributes.position,x=Dt(n,o),m=Xt(l,a);if(Vs.copy(i).invert(),t.boundsTree)return pt(n,s,yo),yo.matrix.copy(Vs),yo.needsUpdate=!0,t.boundsTree.shapecast({intersectsBounds:v=>yo.intersectsBox(v),intersectsTriangle:v=>{v.a.applyMatrix4(i),v.b.applyMatrix4(i),v.c.applyMatrix4(i),v.needsUpdate=!0;for(let M=x,S=m+x;M<S;M++)if(Mt(jr,3*e.resolveTriangleIndex(M),d,u),jr.needsUpdate=!0,v.intersectsTriangle(jr))return!0;return!1}});{const p=fo(t);for(let v=x,M=m+x;v<M;v++){const S=e.resolveTriangleIndex(v);Mt(Qr,3*S,d,u),Qr.a.applyMatrix4(Vs),Qr.b.applyMatrix4(Vs),Qr.c.applyMatrix4(Vs),Qr.needsUpdate=!0;for(let b=0,w=p*3;b<w;b+=3)if(Mt(jr,b,h,g),jr.needsUpdate=!0,Qr.intersectsTriangle(jr))return!0}}}else{const f=At(n),d=wt(n,o);return pt(f,s,Mo),!!(r.intersectsBox(Mo)&&ru(f,e,t,i,r)||(pt(d,s,Mo),r.intersectsBox(Mo)&&ru(d,e,t,i,r)))}}const bo=new je,su=new jt,Ws=new jt,FS=new N,OS=new N,BS=new N,kS=new N;function zS(n,e,t,i={},r={},s=0,a=1/0){e.boundingBox||e.computeBoundingBox(),su.set(e.boundingBox.min,e.boundingBox.max,t),su.needsUpdate=!0;const o=n.geometry,l=o.attributes.position,c=o.index,f=e.attributes.position,d=e.index,u=vn.getPrimitive(),h=vn.getPrimitive();let g=FS,x=OS,m=null,p=null;r&&(m=BS,p=kS);let v=1/0,M=null,S=null;return bo.copy(t).invert(),Ws.matrix.copy(bo),n.shapecast({boundsTraverseOrder:b=>su.distanceToBox(b),intersectsBounds:(b,w,_)=>_<v&&_<a?(w&&(Ws.min.copy(b.min),Ws.max.copy(b.max),Ws.needsUpdate=!0),!0):!1,intersectsRange:(b,w)=>{if(e.boundsTree){const _=e.boundsTree;return _.shapecast({boundsTraverseOrder:y=>Ws.distanceToBox(y),intersectsBounds:(y,I,R)=>R<v&&R<a,intersectsRange:(y,I)=>{for(let R=y,P=y+I;R<P;R++){const D=_.resolveTriangleIndex(R);Mt(h,3*D,d,f),h.a.applyMatrix4(t),h.b.applyMatrix4(t),h.c.applyMatrix4(t),h.needsUpdate=!0;for(let O=b,L=b+w;O<L;O++){const k=n.resolveTriangleIndex(O);Mt(u,3*k,c,l),u.needsUpdate=!0;const V=u.distanceToTriangle(h,g,m);if(V<v&&(x.copy(g),p&&p.copy(m),v=V,M=O,S=R),V<s)return!0}}}})}else{const _=fo(e);for(let y=0,I=_;y<I;y++){Mt(h,3*y,d,f),h.a.applyMatrix4(t),h.b.applyMatrix4(t),h.c.applyMatrix4(t),h.needsUpdate=!0;for(let R=b,P=b+w;R<P;R++){const D=n.resolveTriangleIndex(R);Mt(u,3*D,c,l),u.needsUpdate=!0;const O=u.distanceToTriangle(h,g,m);if(O<v&&(x.copy(g),p&&p.copy(m),v=O,M=R,S=y),O<s)return!0}}}}}),vn.releasePrimitive(u),vn.releasePrimitive(h),v===1/0?null:(i.point?i.point.copy(x):i.point=x.clone(),i.distance=v,i.faceIndex=M,r&&(r.point?r.point.copy(p):r.point=p.clone(),r.point.applyMatrix4(bo),x.applyMatrix4(bo),r.distance=x.sub(r.point).length(),r.faceIndex=S),i)}function yh(n,e,t){return n===null?null:(n.point.applyMatrix4(e.matrixWorld),n.distance=n.point.distanceTo(t.ray.origin),n.object=e,n)}const Eo=new jt,To=new Fa,bh=new N,Eh=new je,Th=new N,au=["getX","getY","getZ"];class Ao extends oS{static serialize(e,t={}){t={cloneBuffers:!0,...t};const i=e.geometry,r=e._roots,s=e._indirectBuffer,a=i.getIndex(),o={version:1,roots:null,index:null,indirectBuffer:null};return t.cloneBuffers?(o.roots=r.map(l=>l.slice()),o.index=a?a.array.slice():null,o.indirectBuffer=s?s.slice():null):(o.roots=r,o.index=a?a.array:null,o.indirectBuffer=s),o}static deserialize(e,t,i={}){i={setIndex:!0,indirect:!!e.indirectBuffer,...i};const{index:r,roots:s,indirectBuffer:a}=e;e.version||(console.warn("MeshBVH.deserialize: Serialization format has been changed and will be fixed up. It is recommended to regenerate any stored serialized data."),l(s));const o=new Ao(t,{...i,[Fc]:!0});if(o._roots=s,o._indirectBuffer=a||null,i.setIndex){const c=t.getIndex();if(c===null){const f=new kt(e.index,1,!1);t.setIndex(f)}else c.array!==r&&(c.array.set(r),c.needsUpdate=!0)}return o;function l(c){for(let f=0;f<c.length;f++){const d=c[f],u=new Uint32Array(d),h=new Uint16Array(d);for(let g=0,x=d.byteLength/cn;g<x;g++){const m=St*g,p=2*m;_t(p,h)||(u[m+6]=u[m+6]/St-g)}}}}get primitiveStride(){return 3}get resolveTriangleIndex(){return this.resolvePrimitiveIndex}constructor(e,t={}){t.maxLeafTris&&(console.warn('MeshBVH: "maxLeafTris" option has been deprecated. Use "targetLeafSize", instead.'),t={...t,targetLeafSize:t.maxLeafTris}),super(e,t)}shiftTriangleOffsets(e){return super.shiftPrimitiveOffsets(e)}writePrimitiveBounds(e,t,i){const r=this.geometry,s=this._indirectBuffer,a=r.attributes.position,o=r.index?r.index.array:null,c=(s?s[e]:e)*3;let f=c+0,d=c+1,u=c+2;o&&(f=o[f],d=o[d],u=o[u]);for(let h=0;h<3;h++){const g=a[au[h]](f),x=a[au[h]](d),m=a[au[h]](u);let p=g;x<p&&(p=x),m<p&&(p=m);let v=g;x>v&&(v=x),m>v&&(v=m),t[i+h]=p,t[i+h+3]=v}return t}computePrimitiveBounds(e,t,i){const r=this.geometry,s=this._indirectBuffer,a=r.attributes.position,o=r.index?r.index.array:null,l=a.normalized;if(e<0||t+e-i.offset>i.length/6)throw new Error("MeshBVH: compute triangle bounds range is invalid.");const c=a.array,f=a.offset||0;let d=3;a.isInterleavedBufferAttribute&&(d=a.data.stride);const u=["getX","getY","getZ"],h=i.offset;for(let g=e,x=e+t;g<x;g++){const p=(s?s[g]:g)*3,v=(g-h)*6;let M=p+0,S=p+1,b=p+2;o&&(M=o[M],S=o[S],b=o[b]),l||(M=M*d+f,S=S*d+f,b=b*d+f);for(let w=0;w<3;w++){let _,y,I;l?(_=a[u[w]](M),y=a[u[w]](S),I=a[u[w]](b)):(_=c[M+w],y=c[S+w],I=c[b+w]);let R=_;y<R&&(R=y),I<R&&(R=I);let P=_;y>P&&(P=y),I>P&&(P=I);const D=(P-R)/2,O=w*2;i[v+O+0]=R+D,i[v+O+1]=D+(Math.abs(R)+D)*ao}}return i}raycastObject3D(e,t,i=[]){const{material:r}=e;if(r===void 0)return;Eh.copy(e.matrixWorld).invert(),To.copy(t.ray).applyMatrix4(Eh),Th.setFromMatrixScale(e.matrixWorld),bh.copy(To.direction).multiply(Th);const s=bh.length(),a=t.near/s,o=t.far/s;if(t.firstHitOnly===!0){let l=this.raycastFirst(To,r,a,o);l=yh(l,e,t),l&&i.push(l)}else{const l=this.raycast(To,r,a,o);for(let c=0,f=l.length;c<f;c++){const d=yh(l[c],e,t);d&&i.push(d)}}return i}refit(e=null){return(this.indirect?LS:vS)(this,e)}raycast(e,t=ri,i=0,r=1/0){const s=this._roots,a=[],o=this.indirect?DS:yS;for(let l=0,c=s.length;l<c;l++)o(this,l,t,e,a,i,r);return a}raycastFirst(e,t=ri,i=0,r=1/0){const s=this._roots;let a=null;const o=this.indirect?NS:ES;for(let l=0,c=s.length;l<c;l++){const f=o(this,l,t,e,i,r);f!=null&&(a==null||f.distance<a.distance)&&(a=f)}return a}intersectsGeometry(e,t){let i=!1;const r=this._roots,s=this.indirect?US:TS;for(let a=0,o=r.length;a<o&&(i=s(this,a,e,t),!i);a++);return i}shapecast(e){const t=vn.getPrimitive(),i=super.shapecast({...e,intersectsPrimitive:e.intersectsTriangle,scratchPrimitive:t,iterate:this.indirect?MS:_S});return vn.releasePrimitive(t),i}bvhcast(e,t,i){let{intersectsRanges:r,intersectsTriangles:s}=i;const a=vn.getPrimitive(),o=this.geometry.index,l=this.geometry.attributes.position,c=this.indirect?g=>{const x=this.resolveTriangleIndex(g);Mt(a,x*3,o,l)}:g=>{Mt(a,g*3,o,l)},f=vn.getPrimitive(),d=e.geometry.index,u=e.geometry.attributes.position,h=e.indirect?g=>{const x=e.resolveTriangleIndex(g);Mt(f,x*3,d,u)}:g=>{Mt(f,g*3,d,u)};if(s){if(!(e instanceof Ao))throw new Error('MeshBVH: "intersectsTriangles" callback can only be used with another MeshBVH.');const g=(x,m,p,v,M,S,b,w)=>{for(let _=p,y=p+v;_<y;_++){h(_),f.a.applyMatrix4(t),f.b.applyMatrix4(t),f.c.applyMatrix4(t),f.needsUpdate=!0;for(let I=x,R=x+m;I<R;I++)if(c(I),a.needsUpdate=!0,s(a,f,I,_,M,S,b,w))return!0}return!1};if(r){const x=r;r=function(m,p,v,M,S,b,w,_){return x(m,p,v,M,S,b,w,_)?!0:g(m,p,v,M,S,b,w,_)}}else r=g}return super.bvhcast(e,t,{intersectsRanges:r})}intersectsBox(e,t){return Eo.set(e.min,e.max,t),Eo.needsUpdate=!0,this.shapecast({intersectsBounds:i=>Eo.intersectsBox(i),intersectsTriangle:i=>Eo.intersectsTriangle(i)})}intersectsSphere(e){return this.shapecast({intersectsBounds:t=>e.intersectsBox(t),intersectsTriangle:t=>t.intersectsSphere(e)})}closestPointToGeometry(e,t,i={},r={},s=0,a=1/0){return(this.indirect?zS:PS)(this,e,t,i,r,s,a)}closestPointToPoint(e,t={},i=0,r=1/0){return dS(this,e,t,i,r)}}class HS{constructor(e,t){this.mesh=e;const i=e.finding.length,r=new Float32Array(2*i);e.finding.forEach((s,a)=>{r[2*a]=s,r[2*a+1]=s<0?-1:t.get(s)??0}),this.geometry.setAttribute("position",new kt(e.position,3)),this.geometry.setAttribute("normal",new kt(e.normal,3)),this.geometry.setAttribute("tint",new kt(e.color,4,!0)),this.geometry.setAttribute("support",new kt(e.support,1,!0)),this.geometry.setAttribute("blade",new kt(e.blade,1)),this.geometry.setAttribute("mark",new kt(r,2)),this.geometry.setIndex(new kt(e.index,1)),this.bvh=new Ao(this.geometry),[this.center,this.radius]=GS(e.position)}mesh;geometry=new Hn;center;radius;bvh;ray=new Fa;cast(e,t){this.ray.origin.set(...e),this.ray.direction.set(...t);const i=this.bvh.raycastFirst(this.ray,an);if(!i?.face)return null;const{a:r,b:s,c:a}=i.face,[o,l,c]=[this.vertex(r),this.vertex(s),this.vertex(a)],f=l.clone().sub(o).cross(c.clone().sub(o)).normalize(),d=[r,s,a].reduce((u,h)=>this.vertex(h).distanceToSquared(i.point)<this.vertex(u).distanceToSquared(i.point)?h:u,r);return{point:i.point.toArray(),distance:i.distance,normal:f.toArray(),cosine:-f.dot(this.ray.direction),finding:this.mesh.finding[d],support:this.mesh.support[d]/255,vertex:d}}clear(e,t,i){this.ray.origin.set(...e);const r=new N(...t).sub(this.ray.origin),s=r.length();this.ray.direction.copy(r.divideScalar(s||1));const a=this.bvh.raycastFirst(this.ray,an);return!a||a.distance>=s-i}nearest(e){const t=this.bvh.closestPointToPoint(new N(...e));if(!t)return null;const i=this.mesh.index,[r,s,a]=[0,1,2].map(d=>i[3*t.faceIndex+d]),[o,l,c]=[this.vertex(r),this.vertex(s),this.vertex(a)],f=l.clone().sub(o).cross(c.sub(o)).normalize();return{point:t.point.toArray(),normal:f.toArray(),distance:t.distance,vertex:r}}vertex(e){return new N().fromArray(this.mesh.position,3*e)}}function GS(n){const e=n.length/3,t=Math.max(1,Math.floor(e/2e4)),i=[0,1,2].map(s=>{const a=[];for(let l=0;l<e;l+=t)a.push(n[3*l+s]);a.sort((l,c)=>l-c);const o=l=>a[Math.min(a.length-1,Math.floor(l*a.length))]??0;return(o(.02)+o(.98))/2}),r=[];for(let s=0;s<e;s+=t)r.push(Math.hypot(n[3*s]-i[0],n[3*s+1]-i[1],n[3*s+2]-i[2]));return r.sort((s,a)=>s-a),[i,r[Math.min(r.length-1,Math.floor(.98*r.length))]||1]}const VS={schema_version:il,title:"Inspection",model:{index:0,count:0,unit:"model",scale:null},models:[],videos:[],camera:null,frames:[],sprite:null,detections:[],defects:[],events:[],row:{status:"unknown"},verdict:"unknown",flags:[],surface:null,surface_reason:null,up:null},Fi=window.BLADEATLAS,wo=Fi?Fi.viewer.schema_version!==il?`This page reads data of version ${il}; the data beside it has version ${String(Fi.viewer.schema_version)}.`:null:"The file data.js is not beside this page, or it could not be read. Open index.html in the folder that the inspection wrote.",ie=wo||!Fi?VS:Fi.viewer,Oi=em([...ie.defects.map(n=>n.label),...ie.detections.map(n=>n.label)]),es=new Map(ie.defects.map(n=>[n.id,n])),ar=new Map(ie.frames.map(n=>[n.index,n])),or=new Map(ie.detections.map(n=>[n.id,n])),Bi=wh(ie.detections,n=>n.frame),Ro=wh(ie.events,n=>n.defect_id),Rt=[...ie.frames].sort((n,e)=>n.video-e.video||n.time_s-e.time_s),ki=new Map(Rt.map((n,e)=>[n.index,e]));let Ah=null;const zt=WS(),ou=zt?null:Ah??ie.surface_reason??"The result has no surface.",lt={width:ie.camera?.width??ie.videos[0]?.width??960,height:ie.camera?.height??ie.videos[0]?.height??720},vt=new sm(ie.camera&&Zp(ie.camera.model,ie.camera.params),ie.camera?.crop??ie.crop??[0,0,lt.width,lt.height],ie.frames,zt,ie.surface?.spacing??0),lr=XS();function WS(){if(!Fi?.surface||wo)return null;try{const n=new Map(ie.defects.map(t=>[t.id,Oi.get(t.label)?.index??0])),e=new HS(Xp(zp(Fi.surface)),n);return Fi.surface=null,e}catch(n){return Ah=`The surface could not be read: ${n instanceof Error?n.message:String(n)}.`,null}}function XS(){const n=[0],e=Math.max(ie.videos.length,1+Math.max(0,...ie.frames.map(t=>t.video)));for(let t=0;t<e;t++){const i=Math.max(0,...ie.frames.filter(r=>r.video===t).map(r=>r.time_s));n.push(n[t]+Math.max(ie.videos[t]?.duration_s??0,i))}return n}function wh(n,e){const t=new Map;for(const i of n){const r=e(i);if(r===null)continue;const s=t.get(r);s?s.push(i):t.set(r,[i])}return t}const lu=["picture","support","defect","blade"],ts=["findings","frames","detections"],$S={tab:"findings",d:null,f:null,n:null,p:null,b:null,layer:"picture",cam:null};function Rh(n){const e=new URLSearchParams(n.replace(/^#/,"")),t=r=>{const s=e.get(r);return s!==null&&/^\d{1,9}$/.test(s)?Number(s):null},i=(r,s)=>{const a=(e.get(r)??"").split(",").map(o=>o.trim()?Number(o):NaN);return a.length===s&&a.every(Number.isFinite)?a:null};return{tab:ts.find(r=>r===e.get("tab"))??"findings",d:t("d"),f:t("f"),n:t("n"),p:i("p",3),b:t("b"),layer:lu.find(r=>r===e.get("layer"))??"picture",cam:i("cam",10)}}function Ch(n){const e=[];n.tab!=="findings"&&e.push(`tab=${n.tab}`);for(const t of["d","f","n","b"]){const i=n[t];i!==null&&e.push(`${t}=${i}`)}return n.p&&e.push(`p=${Ph(n.p)}`),n.layer!=="picture"&&e.push(`layer=${n.layer}`),n.cam&&e.push(`cam=${Ph(n.cam)}`),`#${e.join("&")}`}function Ph(n){return n.map(e=>String(Number(e.toPrecision(6)))).join(",")}const qS={size:"Size",confidence:"Confidence",seen:"Persistence",blade:"Blade",label:"Label",time:"First seen",id:"Number"};function YS(n,e,t=new Map){const i=s=>{switch(n){case"size":return s.length??s.size;case"confidence":return s.confidence?.value??null;case"seen":return s.persistence.share;case"blade":return s.blade?Number(s.blade)||String(s.blade):null;case"label":return s.label;case"time":return KS(t.get(s.id));case"id":return s.id}},r=e?-1:1;return(s,a)=>{const[o,l]=[i(s),i(a)];if(o===null||l===null)return o===l?s.id-a.id:o===null?1:-1;const c=typeof o=="number"&&typeof l=="number"?o-l:String(o).localeCompare(String(l));return r*c||s.id-a.id}}function KS(n){return n?.length?Math.min(...n.map(e=>1e6*(e.video??0)+e.start_s)):null}const Le=it($S),ns=An(()=>Le.value.tab),Co=An(()=>Le.value.layer),Ze=An(()=>Le.value.d===null?null:es.get(Le.value.d)??null),zi=An(()=>Le.value.f===null?null:ar.get(Le.value.f)??null),is=An(()=>Le.value.n===null?null:or.get(Le.value.n)??null),rs=An(()=>Le.value.b),ss=it("outlines"),cr=it(0),as=it(!1),cu=it(0),ur=it(!1),fr=it([]),Hi=it(!1),Yn=it(!1),_i=it(null),uu=it(null),os=it(""),fu=it("size"),Xs=it(!0),dr=it({label:"",blade:"",confidence:"",review:"",words:""}),Po=it(!1),Lo=An(()=>{const n=Le.value.p;if(n&&zt){const t=zt.nearest(n);return t?vt.framesSeeing(t.point,t.normal):[]}const e=Ze.value;return e?e.frames.map(({frame_index:t,quality:i})=>({frame:t,quality:i,x:NaN,y:NaN})):[]});function un(n,e=!1){const t={...Le.peek(),...n},i=Ch(t);Le.value=t,i!==(location.hash||"#")&&(e?location.replace(i):location.hash=i)}function hr(n,e={}){const t=n===null?void 0:es.get(n);ms(()=>{if(_i.value=null,!t)return un({d:null,n:null,p:null});const i=Le.peek().f,r=e.frame??$s(t.id)??i;un({d:t.id,f:r,n:null,p:null,cam:null}),os.value=`Finding D${t.id}, ${t.label}${r===null?"":`, frame ${r}`}`})}function $s(n){const e=es.get(n);if(!e)return null;const t=e.frames.find(r=>r.detected)?.frame_index,i=e.detections.map(r=>or.get(r)?.frame).find(r=>r!=null);return e.best?.frame??e.best_frames[0]??t??i??e.frames[0]?.frame_index??null}function Kn(n,e=!1){if(n===null||!ar.has(n))return;const t=is.peek();ms(()=>{_i.peek()?.frame!==n&&(_i.value=null),un({f:n,n:t?.frame===n?t.id:null},e)})}function du(n){const e=or.get(n);if(!e)return;_i.value=null;const t=e.defect!==null&&es.has(e.defect);un({n,d:t?e.defect:null,f:e.frame??Le.peek().f,p:null}),os.value=`Detection ${n}, ${e.label}, ${e.state}`}function Lh(n,e,t){ms(()=>{const i=es.has(e),r=t===void 0&&zt?zt.nearest(n):null,s=Le.peek().f,a=r?vt.framesSeeing(r.point,r.normal):[],o=t??(i?$s(e):a.some(l=>l.frame===s)?s:a[0]?.frame??s);_i.value=null,un({p:[n[0],n[1],n[2]],d:i?e:null,n:null,f:o}),os.value=i?`Finding D${e}`:"Point of the surface"})}function ZS(n,e){const t=Le.peek().f;if(t===null)return;const i=vt.pointAt(t,n,e),r=(Bi.get(t)??[]).find(({box:s})=>n>=s[0]&&n<=s[2]&&e>=s[1]&&e<=s[3]);ms(()=>{i.reason===null?Lh(i.point,r?.defect??i.finding,t):r&&du(r.id),r&&un({n:r.id},!0),_i.value={frame:t,x:n,y:e,shown:i}})}function Zn(n){const e=Le.peek().f,t=e===null?-1:ki.get(e)??-1;Kn(Rt[Math.max(0,Math.min(Rt.length-1,t+n))]?.index??null,!0)}function Do(n){const e=Lo.peek().map(r=>r.frame).sort((r,s)=>(ki.get(r)??0)-(ki.get(s)??0)),t=ki.get(Le.peek().f??-1)??-1,i=n>0?e.find(r=>(ki.get(r)??0)>t):e.filter(r=>(ki.get(r)??0)<t).pop();i!==void 0&&Kn(i)}function hu(n,e=()=>!0){const t=Ys.peek(),i=t.findIndex(r=>r.id===Le.peek().d);for(let r=i+n;r>=0&&r<t.length;r+=n){const s=t[i<0&&n<0?t.length-1:r];if(s&&e(s.id))return hr(s.id)}}const Dh=n=>un({tab:n},!0),qs=n=>un({layer:n},!0),pu=it(new Map),Ys=An(()=>{const{label:n,blade:e,confidence:t,review:i,words:r}=dr.value,s=r.trim().toLowerCase();return[...ie.defects.filter(o=>(!n||o.label===n)&&(!e||String(o.blade??"")===e)&&(!t||(o.confidence?.value??0)>=Number(t))&&(!i||(pu.value.get(o.id)??"open")===i)&&(!s||`d${o.id} ${o.label} ${o.blade??""} ${o.side??""}`.toLowerCase().includes(s)))].sort(YS(fu.value,Xs.value,Ro))});function JS(){const n=()=>{if(Ch(Le.peek())===(location.hash||"#"))return;const r=Rh(location.hash);Le.value=r,uu.value=r.cam};Le.value=Rh(location.hash),window.addEventListener("hashchange",n);const{d:e,f:t,n:i}=Le.peek();if(t===null){const r=i===null?void 0:or.get(i)?.frame,s=ie.frames.find(a=>a.registered&&a.picture)??Rt[0];Le.value={...Le.peek(),f:r??(e===null?null:$s(e))??s?.index??null}}}function mu(n,e){if(Hi.peek()){Hi.value=!1;return}const t=n??ki.get(Le.peek().f??-1)??0,i=e??Rt.length-1;Hi.value=!0;let r=t;const s=()=>{if(!Hi.peek()||r>i){Hi.value=!1;return}const a=Rt[r];a&&Kn(a.index,!0);const o=Rt[r+1],l=a&&o&&o.video===a.video?1e3*(o.time_s-a.time_s):100;r+=1,setTimeout(s,Math.max(40,Math.min(500,l)))};s()}function QS(n,e,t){const i=Rt.flatMap((a,o)=>a.video===t&&a.time_s>=n-2&&a.time_s<=e+2?[o]:[]),[r,s]=[i[0],i[i.length-1]];r!==void 0&&s!==void 0&&mu(r,s)}ii(()=>{const n=Ze.value?`D${Ze.value.id} ${Ze.value.label} · `:"";_s(()=>document.title=`${n}${ie.title}`)});const Ih=`bladeatlas review ${ie.fingerprint??`${ie.title} ${ie.frames.length} ${ie.detections.length}`} ${ie.model.index}`,fn=it(eM()),Nh=it(!0),Jn=it(null),Uh=An(()=>{const n=ie.defects.map(e=>Ss(fn.value,e.id).state);return{done:n.filter(e=>e!=="open").length,all:n.length}});kh();function Io(n,e=null,t=null){const i=Ze.peek();i&&(Bh({action:n,value:e,reason:t,target:{kind:"defect",id:i.id,label:i.label,model:i.model,centroid:i.centroid}}),os.value=`D${i.id}: ${n}${e?` ${e}`:""}${t?`, ${t}`:""}`)}function Fh(){const n=Bp(fn.peek());n&&(Bh({action:"undo",value:n.revision,reason:null,target:n.target}),os.value=`Taken back: ${n.action} of D${n.target.id}`,es.has(n.target.id)&&hr(n.target.id))}const Oh=n=>hu(n,e=>Ss(fn.peek(),e).state==="open");function jS(){const{title:n,fingerprint:e,model:t}=ie,i=JSON.stringify({schema_version:1,title:n,fingerprint:e??null,model:t.index,records:fn.peek()},null,1),r=document.createElement("a");r.href=URL.createObjectURL(new Blob([i],{type:"application/json"})),r.download="review.json",r.click(),setTimeout(()=>URL.revokeObjectURL(r.href),1e3)}function Bh(n){fn.value=[...fn.peek(),{revision:fn.peek().length+1,...n,time:new Date().toISOString()}];try{localStorage.setItem(Ih,JSON.stringify(fn.peek()))}catch{Nh.value=!1}kh()}function kh(){pu.value=new Map(ie.defects.flatMap(n=>{const{state:e}=Ss(fn.peek(),n.id);return e==="open"?[]:[[n.id,e]]}))}function eM(){try{return kp(localStorage.getItem(Ih))??[]}catch{return[]}}function Sn(n){return`${n.toFixed(2)} s`}function Gi(n,e,t){if(n==null)return"unknown";const i=t==="model"?"":` ${t}`;if(!e)return`${tM(n,3)}${i}`;const r=Math.max(0,1-Math.floor(Math.log10(e)));return`${n.toFixed(Math.min(r,9))} ± ${e.toFixed(Math.min(r,9))}${i}`}function tM(n,e){return String(Number(n.toPrecision(e)))}function ls(n){return`${Math.round(100*n)} %`}function gu(n){return n>=.75?"high":n>=.4?"medium":"low"}function nM(n){const e=n.confidence?.parts??{},t=u=>e[u]??null,i=[],[r,s,a]=[t("views_visible"),t("views_support"),t("views_same_label")];if(r!==null&&s!==null){const u=r>0?s/r:0,h=r>0?`${cs(s)} of ${cs(r)} other views of the place show a box there`:"no other view could see the place";i.push([r>0?u:0,`${h}.`]),s>0&&a!==null&&i.push([a/s,`${cs(a)} of these ${cs(s)} give it the same label.`])}const o=t("peers");o!==null&&i.push([o>0?.9:.2,o>0?`${cs(o)} further observations lie at the same place.`:"It was observed once only."]);const l=t("cosine");l!==null&&i.push([l,`It is seen at ${Math.round(Math.acos(Math.min(1,l))*180/Math.PI)}° from straight on.`]);const c=t("depth_agreement");c!==null&&i.push([c,`${ls(c)} of the depth map under the box agree with the surface.`]);const f=t("cloud_spacings");f!==null&&f>2&&i.push([.1,`The surface there is ${f.toFixed(1)} point spacings away from measured points.`]);const d=t("model_doubts");return d&&i.push([0,`The checks raise ${d===1?"a warning":`${cs(d)} warnings`} about the whole model.`]),i.sort((u,h)=>u[0]-h[0]).map(([,u])=>u)}function cs(n){return String(Math.round(n*10)/10)}function pr(n,e){return e?n.reasons?.[e]??iM[e]??e.replaceAll("_"," "):""}const iM={frame_not_registered:"the camera of this frame could not be found",not_registered:"the camera of this frame could not be found",outside_roi:"this pixel lies outside the part of the picture that was used",off_surface:"the reconstructed surface does not reach here",occluded:"the surface is seen from behind here: it lies in another blade's shadow or is no real front",no_surface:"the result has no surface"};function _u(n){return n==null||n===""||n===0?"unknown":String(n)}let No=null;function rM(n,e,t){const[i,r]=[n.nearest(e)?.vertex,n.nearest(t)?.vertex];if(i===void 0||r===void 0)return null;const{start:s,other:a}=aM(n),o=n.mesh.position,l=x=>[o[3*x],o[3*x+1],o[3*x+2]],c=new Float64Array(s.length-1).fill(1/0),f=new Int32Array(s.length-1).fill(-1),d=l(r),u=new lM;c[i]=0,u.push(Mi(Si(l(i),d)),i);for(let x=u.pop();x!==null&&x!==r;x=u.pop()){const m=l(x);for(let p=s[x];p<s[x+1];p++){const v=a[p],M=l(v),S=c[x]+Mi(Si(M,m));S<c[v]&&(c[v]=S,f[v]=x,u.push(S+Mi(Si(M,d)),v))}}if(c[r]===1/0)return null;const h=[[...e]],g=[];for(let x=r;x!==-1;x=f[x])g.push(x);for(const x of g.reverse())h.push([...l(x)]);return h.push([...t]),sM(h)}function sM(n){for(let t=0;t<4;t++)for(let i=1;i<n.length-1;i++){const[r,s,a]=[n[i-1],n[i],n[i+1]];for(let o=0;o<3;o++)s[o]=.5*s[o]+.25*(r[o]+a[o])}let e=0;for(let t=1;t<n.length;t++)e+=Mi(Si(n[t],n[t-1]));return e}function aM(n){if(No?.mesh===n.mesh)return No;const{index:e,finding:t}=n.mesh,i=oM(n.mesh.position),r=new Uint32Array(t.length+1),s=l=>{for(let c=0;c<e.length;c+=3){const[f,d,u]=[e[c],e[c+1],e[c+2]];for(const[h,g]of[[f,d],[d,u],[u,f]])l(h,g),l(g,h)}i.forEach((c,f)=>{c!==f&&(l(c,f),l(f,c))})};s(l=>(r[l+1],r[l+1]++));for(let l=1;l<r.length;l++)r[l]+=r[l-1];const a=new Uint32Array(r[r.length-1]),o=r.slice();return s((l,c)=>a[o[l]++]=c),No={mesh:n.mesh,start:r,other:a},No}function oM(n){const e=new Map;return Uint32Array.from({length:n.length/3},(t,i)=>{const r=`${n[3*i]},${n[3*i+1]},${n[3*i+2]}`,s=e.get(r);return s===void 0&&e.set(r,i),s??i})}class lM{keys=[];nodes=[];push(e,t){let i=this.keys.length;for(;i>0;){const r=i-1>>1;if(this.keys[r]<=e)break;this.keys[i]=this.keys[r],this.nodes[i]=this.nodes[r],i=r}this.keys[i]=e,this.nodes[i]=t}pop(){const e=this.nodes[0],[t,i]=[this.keys.pop(),this.nodes.pop()];if(e===void 0||t===void 0||i===void 0)return null;const r=this.keys.length;if(!r)return e;let s=0;for(;;){let a=2*s+1;if(a>=r||(a+1<r&&this.keys[a+1]<this.keys[a]&&(a+=1),this.keys[a]>=t))break;this.keys[s]=this.keys[a],this.nodes[s]=this.nodes[a],s=a}return this.keys[s]=t,this.nodes[s]=i,e}}class cM{constructor(e,t,i){this.up=e,this.reach=t,this.moved=i}up;reach;moved;camera=new gn(35,1,.01,100);target=new N;get distance(){return this.camera.position.distanceTo(this.target)}place(e,t,i=this.up,r=35){this.camera.position.copy(e),this.target.copy(t),this.camera.up.copy(i),this.camera.lookAt(t),this.camera.fov=r,this.changed()}turn(e,t){const i=new N(1,0,0).applyQuaternion(this.camera.quaternion),r=new N(0,0,-1).applyQuaternion(this.camera.quaternion),s=Math.acos(Math.max(-1,Math.min(1,r.dot(this.up)))),a=Math.max(-(s-.05),Math.min(Math.PI-.05-s,-t)),o=new Ai().setFromAxisAngle(this.up,e).multiply(new Ai().setFromAxisAngle(i,-a));this.camera.position.sub(this.target).applyQuaternion(o).add(this.target),this.camera.quaternion.premultiply(o),this.changed()}pan(e,t){const i=2*this.distance*Math.tan(this.camera.fov*Math.PI/360),r=new N(-e*i,t*i,0).applyQuaternion(this.camera.quaternion);this.camera.position.add(r),this.target.add(r),this.changed()}zoom(e){const t=Math.min(20*this.reach,Math.max(.001*this.reach,this.distance*e)),i=this.camera.position.clone().sub(this.target).setLength(t);this.camera.position.copy(this.target).add(i),this.changed()}get numbers(){const e=new N(0,1,0).applyQuaternion(this.camera.quaternion);return[...this.camera.position.toArray(),...this.target.toArray(),...e.toArray(),this.camera.fov]}set numbers(e){const[t=0,i=0,r=0,s=0,a=0,o=0,l=0,c=0,f=0,d=35]=e;this.place(new N(t,i,r),new N(s,a,o),new N(l,c,f),d)}changed(){const e=this.camera.position.distanceTo(this.target)+4*this.reach;this.camera.near=Math.max(e/2e4,.001*this.reach),this.camera.far=e,this.camera.updateProjectionMatrix(),this.camera.updateMatrixWorld(),this.moved()}}function uM(n,e,t){const i=new Map;let r=0;const s=()=>n.clientHeight||1,a=u=>{n.setPointerCapture(u.pointerId),i.size||(r=0),i.set(u.pointerId,{x:u.clientX,y:u.clientY})},o=u=>{const h=i.get(u.pointerId);if(!h)return;const[g,x]=[u.clientX-h.x,u.clientY-h.y];if(r+=Math.hypot(g,x),i.size===2){const m=[...i].find(([v])=>v!==u.pointerId)?.[1]??h,p=(v,M)=>Math.hypot(v-m.x,M-m.y)||1;e.zoom(p(h.x,h.y)/p(u.clientX,u.clientY)),e.pan(g/2/s(),x/2/s())}else u.buttons&2||u.shiftKey?e.pan(g/s(),x/s()):r>4&&e.turn(-g/s()*3.5,-x/s()*3.5);i.set(u.pointerId,{x:u.clientX,y:u.clientY})},l=u=>{if(i.delete(u.pointerId)&&!i.size&&r<=4&&u.button===0){const h=n.getBoundingClientRect();t(u.clientX-h.left,u.clientY-h.top)}},c=u=>{i.delete(u.pointerId)},f=u=>{u.preventDefault(),e.zoom(Math.exp(Math.max(-1,Math.min(1,u.deltaY/400))))},d=u=>u.preventDefault();return n.addEventListener("pointerdown",a),n.addEventListener("pointermove",o),n.addEventListener("pointerup",l),n.addEventListener("pointercancel",c),n.addEventListener("wheel",f,{passive:!1}),n.addEventListener("contextmenu",d),()=>{n.removeEventListener("pointerdown",a),n.removeEventListener("pointermove",o),n.removeEventListener("pointerup",l),n.removeEventListener("pointercancel",c),n.removeEventListener("wheel",f),n.removeEventListener("contextmenu",d)}}const fM=`
+precision highp float;
+in vec3 place;
+in vec3 facing;
+in vec4 paint;
+in float seen;
+flat in float onBlade;
+flat in vec2 owner;
+in float beyond;
+out vec4 result;
+uniform vec3 eye;
+uniform int layer;
+uniform float chosen;
+uniform float alone;
+uniform vec4 plane;
+uniform float exposure;
+uniform vec3 palette[8];
+
+vec3 encoded(vec3 linear) {
+  return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), linear));
+}
+float stripes(float width) { return step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / width)); }
+float dots(float width) { vec2 at = fract(gl_FragCoord.xy / width) - 0.5; return step(dot(at, at), 0.06); }
+
+void main() {
+  if (beyond > 0.0) discard;
+  if (dot(plane.xyz, place) > plane.w) discard;
+  if (alone > 0.0 && abs(onBlade - alone) > 0.5) discard;
+  vec3 towards = normalize(eye - place);
+  float lean = abs(dot(normalize(facing), towards));
+  vec3 light = vec3(0.42 + 0.58 * lean);
+  vec3 base = vec3(0.62);
+  bool found = owner.x >= 0.0;
+  vec3 own = palette[int(clamp(owner.y, 0.0, 7.0))];
+  if (layer == 0) {
+    base = clamp(encoded(paint.rgb * exposure), 0.0, 1.0);
+    if (found) base = mix(base, own, 0.45);
+  } else if (layer == 1) {
+    // Blue, orange and grey stay apart for all kinds of colour blindness; patterns say the same without colour.
+    base = seen >= 0.5 ? vec3(0.45, 0.68, 0.86) : seen >= 0.2 ? mix(vec3(0.93, 0.60, 0.16), vec3(0.62, 0.36, 0.05), stripes(9.0)) : mix(vec3(0.34), vec3(0.12), dots(6.0));
+  } else if (layer == 2) {
+    if (found) base = own;
+  } else {
+    if (onBlade > 0.5) base = palette[int(mod(onBlade - 1.0, 8.0))];
   }
-})();
+  if (found && abs(owner.x - chosen) < 0.5) {
+    // What was found must stay visible below the mark: thin lines on the picture, wide ones elsewhere.
+    if (layer == 0) base = mix(clamp(encoded(paint.rgb * exposure), 0.0, 1.0), own, fract((gl_FragCoord.x + gl_FragCoord.y) / 14.0) < 0.16 ? 0.9 : 0.12);
+    else base = mix(own, vec3(1.0), 0.35 * stripes(8.0));
+  }
+  if (!gl_FrontFacing) { base = mix(vec3(0.42, 0.43, 0.45), vec3(0.33, 0.34, 0.36), stripes(5.0)); }
+  result = vec4(base * light, 1.0);
+}`,dM=`
+in vec4 tint;
+in float support;
+in float blade;
+in vec2 mark;
+out vec3 place;
+out vec3 facing;
+out vec4 paint;
+out float seen;
+flat out float onBlade;
+flat out vec2 owner;
+out float beyond;
+void pass() {
+  place = position;
+  facing = normal;
+  paint = tint;
+  seen = support;
+  onBlade = blade;
+  owner = mark;
+}`,hM=`
+void main() {
+  pass();
+  beyond = 0.0;
+  gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+}`,pM=`
+uniform vec4 pose[3];
+uniform vec4 focus;
+uniform vec4 radial;
+uniform vec2 tangential;
+uniform vec2 extent;
+uniform vec2 depths;
+uniform float fold;
+uniform bool fisheye;
+void main() {
+  pass();
+  vec4 here = vec4(position, 1.0);
+  vec3 p = vec3(dot(pose[0], here), dot(pose[1], here), dot(pose[2], here));
+  float across = length(p.xy);
+  float angle = atan(across, p.z);
+  float reach = fisheye ? angle : across / max(p.z, 1e-9);
+  beyond = (p.z <= 1e-6 || reach >= fold || angle > 1.5) ? 1.0 : 0.0;
+  vec2 at;
+  if (fisheye) {
+    float s = angle * angle;
+    float radius = angle * (1.0 + s * (radial.x + s * (radial.y + s * (radial.z + s * radial.w))));
+    at = across > 1e-9 ? p.xy * radius / across : vec2(0.0);
+  } else {
+    vec2 u = p.xy / max(p.z, 1e-9);
+    float s = dot(u, u);
+    at = u * (1.0 + s * (radial.x + s * radial.y)) + vec2(
+      2.0 * tangential.x * u.x * u.y + tangential.y * (s + 2.0 * u.x * u.x),
+      2.0 * tangential.y * u.x * u.y + tangential.x * (s + 2.0 * u.y * u.y));
+  }
+  vec2 pixel = at * focus.xy + focus.zw;
+  float depth = (length(p) - depths.x) / (depths.y - depths.x);
+  gl_Position = beyond > 0.0 ? vec4(3.0, 3.0, 3.0, 1.0)
+    : vec4(2.0 * pixel.x / extent.x - 1.0, 1.0 - 2.0 * pixel.y / extent.y, 2.0 * depth - 1.0, 1.0);
+}`;function zh(n,e){return new Li({glslVersion:tc,side:an,vertexShader:dM+n,fragmentShader:fM,uniforms:{eye:{value:new N},layer:{value:0},chosen:{value:-2},alone:{value:0},plane:{value:new at(0,0,0,1)},exposure:{value:1},palette:{value:ua.map(([t,i,r])=>new N(t/255,i/255,r/255))},...e}})}const mM=()=>zh(hM,{}),gM=()=>zh(pM,{pose:{value:[new at,new at,new at]},focus:{value:new at},radial:{value:new at},tangential:{value:[0,0]},extent:{value:[1,1]},depths:{value:[0,1]},fold:{value:10},fisheye:{value:!0}}),Hh=n=>lu.indexOf(n);function Gh(n){const e=[],t=4*Math.max(1,Math.floor(n.length/4/2e4));for(let r=0;r<n.length;r+=t)e.push((n[r]+n[r+1]+n[r+2])/765);e.sort((r,s)=>r-s);const i=e[Math.floor(.9*e.length)]??1;return Math.min(6,Math.max(1,.5/Math.max(i,.001)))}class _M{constructor(e,t,i,r,s){this.canvas=e,this.surface=t,this.questions=i,this.home=r,this.drawn=s,this.renderer=new ih({canvas:e,antialias:!0,alpha:!0,preserveDrawingBuffer:!0}),this.renderer.setPixelRatio(Math.min(2,window.devicePixelRatio||1)),this.material.uniforms.exposure.value=Gh(t.mesh.color);const a=new hi(t.geometry,this.material);a.frustumCulled=!1,this.scene.add(a);const o=[...i.poses.values()];this.cameras=Wh(o.flatMap(l=>this.pyramid(l,.04)),8424084),this.cameras.visible=!1,this.current=Wh([],13983232),this.scene.add(this.cameras,this.current),this.orbit=new cM(this.up(),t.radius,()=>{this.untouched=!1,this.request()}),this.whole()}canvas;surface;questions;home;drawn;orbit;renderer;scene=new nd;material=mM();cameras;current;pending=0;clipShare=0;untouched=!0;request(){this.pending||=requestAnimationFrame(()=>this.draw())}resize(e,t){!e||!t||(this.renderer.setSize(e,t,!1),this.orbit.camera.aspect=e/t,this.untouched?this.whole():this.orbit.changed())}show(e){const t=this.material.uniforms;t.layer.value=Hh(e.layer),t.chosen.value=e.finding??-2,t.alone.value=e.blade??0,this.clipShare=e.clip,this.cameras.visible=e.frusta;const i=e.frame===null?void 0:this.questions.poses.get(e.frame);this.current.geometry.dispose(),this.current.geometry=Vh(i?this.pyramid(i,.09):[]),this.request()}whole(){const e=new N(...this.surface.center),t=this.forward(),i=this.surface.radius/Math.tan(35*Math.PI/360)/Math.min(1,this.orbit.camera.aspect);this.orbit.place(e.clone().addScaledVector(t,-1.1*i),e),this.untouched=!0}near(e,t){const i=new N(...e.centroid),r=t===null?void 0:this.questions.poses.get(t),s=r?new N(...r.center).sub(i):new N(...e.normal??[0,0,-1]),a=Math.max(e.size??0,.06*this.surface.radius),o=Math.min(8*a,r?Math.max(s.length(),3*a):1/0),l=r?new N(...Sr(r,[0,-1,0])):this.orbit.up;this.orbit.place(i.clone().add(s.setLength(o)),i,l)}from(e){const{lens:t,crop:i}=this.questions,r=this.questions.poses.get(e);if(!r||!t)return!1;const s=new N(...r.center),a=new N(...Sr(r,[0,0,1])),l=this.surface.cast(r.center,a.toArray())?.distance??this.surface.radius,c=rl(t,(i[0]+i[2])/2,i[1]),f=c?Math.atan2(Math.hypot(c[0],c[1]),c[2]):.5;return this.orbit.place(s,s.clone().addScaledVector(a,l),new N(...Sr(r,[0,-1,0])),Math.min(110,360*f/Math.PI)),!0}pick(e,t){const i=this.orbit.camera,s=new N(2*e/this.canvas.clientWidth-1,1-2*t/this.canvas.clientHeight,.5).unproject(i).sub(i.position).normalize().toArray(),a=this.clipShare>0?this.clipDistance()/Math.max(1e-6,new N(...s).dot(this.ahead())):0,o=i.position.clone().addScaledVector(new N(...s),Math.max(0,a));return this.surface.cast(o.toArray(),s)}screen(e,t){const i=this.orbit.camera,r=new N(...e).project(i);if(r.z>1||Math.abs(r.x)>1.05||Math.abs(r.y)>1.05||this.clipShare>0&&new N(...e).sub(i.position).dot(this.ahead())<this.clipDistance())return null;const s=i.position.toArray(),a=t&&this.clipShare===0&&!this.surface.clear(s,e,.02*this.surface.radius);return{x:(r.x+1)/2*this.canvas.clientWidth,y:(1-r.y)/2*this.canvas.clientHeight,hidden:a}}onScreen(e){return new N(...e).applyQuaternion(this.orbit.camera.quaternion.clone().invert()).toArray()}draw(){this.pending=0;const e=this.material.uniforms,t=this.orbit.camera;e.eye.value.copy(t.position);const i=this.ahead();if(this.clipShare>0){const r=i.dot(t.position)+this.clipDistance();e.plane.value.set(-i.x,-i.y,-i.z,-r)}else e.plane.value.set(0,0,0,1);this.renderer.render(this.scene,t),this.drawn()}ahead(){return new N(0,0,-1).applyQuaternion(this.orbit.camera.quaternion)}clipDistance(){return new N(...this.surface.center).sub(this.orbit.camera.position).dot(this.ahead())+(2*this.clipShare-1)*this.surface.radius}forward(){const e=new N;for(const t of this.questions.poses.values())e.add(new N(...Sr(t,[0,0,1])));return e.length()>.001*this.questions.poses.size?e.normalize():new N(0,0,1)}up(){const e=new N(...this.home.up??[0,-1,0]),t=this.forward(),i=e.clone().addScaledVector(t,-e.dot(t));return(i.length()>.2?i:e).normalize()}pyramid(e,t){const{lens:i,crop:r}=this.questions,s=t*this.surface.radius,a=[[0,1],[2,1],[2,3],[0,3]].map(([o,l])=>{const c=(i&&rl(i,r[o],r[l]))??[o?.5:-.5,l>1?.5:-.5,.7],[f,d,u]=Sr(e,c);return[e.center[0]+s*f,e.center[1]+s*d,e.center[2]+s*u]});return a.flatMap((o,l)=>[e.center,o,o,a[(l+1)%4]])}}function Vh(n){const e=new Hn;return e.setAttribute("position",new kt(new Float32Array(n.flat()),3)),e}function Wh(n,e){const t=new _g(Vh(n),new ud({color:new Ye(e)}));return t.frustumCulled=!1,t}function vM(n,e){const[t,i]=[Xh(n.axis),Xh(n.point)],r=n.root;if(n.status==="unknown"||!t||!i||r!=="inside"&&r!=="outside"&&r!=="inner"&&r!=="outer")return null;const s=Si(e,i),a=sl(s,t)/sl(t,t),o=[s[0]-a*t[0],s[1]-a*t[1],s[2]-a*t[2]],l=Mi(o);if(!(l>0))return null;const c=(r.startsWith("in")?1:-1)/l;return{tip:[c*o[0],c*o[1],c*o[2]]}}function Xh(n){return Array.isArray(n)&&n.length===3&&n.every(e=>typeof e=="number")?n:null}const $h=new Map,vu="http://www.w3.org/2000/svg";function xM(n,e,t,i){for(const f of ie.defects){const d=$h.get(f.id)??SM(f.id,f.label,e),u=n.screen(f.centroid,i);u?i&&(d.hidden=u.hidden):d.hidden=!0,u&&(d.style.transform=`translate(${u.x.toFixed(1)}px, ${u.y.toFixed(1)}px)`),d.classList.toggle("chosen",Ze.peek()?.id===f.id)}const r=[],s=Le.peek().p,a=s&&n.screen(s,!1);a&&r.push(Vi(`M${a.x-9} ${a.y}h18M${a.x} ${a.y-9}v18`,"cross under"),Vi(`M${a.x-9} ${a.y}h18M${a.x} ${a.y-9}v18`,"cross"));const o=fr.peek().map(f=>n.screen(f,!1));for(const f of o)f&&r.push(Vi(`M${f.x-5} ${f.y}a5 5 0 1 0 10 0a5 5 0 1 0-10 0`,"end"));const[l,c]=o;l&&c&&r.push(Vi(`M${l.x} ${l.y}L${c.x} ${c.y}`,"cross under"),Vi(`M${l.x} ${l.y}L${c.x} ${c.y}`,"span")),r.push(...MM(n,n.canvas.clientHeight)),t.replaceChildren(...r)}function SM(n,e,t){const i=document.createElement("button");i.type="button",i.tabIndex=-1,i.className="tag";const r=document.createElementNS(vu,"svg");r.setAttribute("viewBox","-1.3 -1.3 2.6 2.6");const s=Vi(Oi.get(e)?.shape??"","");s.setAttribute("fill",Oi.get(e)?.css??"gray"),r.append(s);const a=document.createElement("span");return a.textContent=`D${n}`,i.append(r,a),i.title=`D${n} ${e}`,i.addEventListener("click",()=>hr(n)),$h.set(n,i),t.append(i),i}function MM(n,e){const[t,i]=[42,e-42],r=[];ie.up&&r.push(["up",ie.up]);const s=vM(ie.row,n.surface.center);if(s&&r.push(["tip",s.tip],["root",[-s.tip[0],-s.tip[1],-s.tip[2]]]),!r.length)return[];const a=r.flatMap(([o,l])=>{const[c,f]=n.onScreen(l),[d,u]=[17*c,-17*f],h=document.createElementNS(vu,"text"),g=Math.hypot(d,u)||1;h.setAttribute("x",String(t+d+9*d/g)),h.setAttribute("y",String(i+u+8*u/g+4)),h.setAttribute("class","way"),h.textContent=o;const x=`M${t} ${i}l${d} ${u}m${-.3*d-.2*u} ${-.3*u+.2*d}l${.3*d+.2*u} ${.3*u-.2*d}l${-.3*d+.2*u} ${-.3*u-.2*d}`;return[Vi(x,"way"),h]});return[Vi(`M${t-33} ${i}a33 33 0 1 0 66 0a33 33 0 1 0-66 0`,"dial"),...a]}function Vi(n,e){const t=document.createElementNS(vu,"path");return t.setAttribute("d",n),e&&t.setAttribute("class",e),t}const Mn=it(null),qh=it(null),yM={picture:"Picture",support:"Support",defect:"Findings",blade:"Blades"};function bM(){const n=ti(null),e=ti(null),t=ti(null);Yi(()=>n.current&&e.current&&t.current?EM(n.current,e.current,t.current):void 0,[]);const i=ou??qh.value,r=zt?.mesh.blade.some(s=>s>0)??!1;return A("section",{class:"panel surface","aria-label":"Surface",children:[A("div",{class:"bar",children:[A("h2",{children:"Surface"}),A("div",{class:"choice",role:"group","aria-label":"Shading",children:lu.filter(s=>s!=="blade"||r).map(s=>A("button",{type:"button","aria-pressed":Co.value===s,disabled:!!i,onClick:()=>qs(s),children:yM[s]},s))}),A("div",{class:"choice",role:"group","aria-label":"View",children:[A("button",{type:"button",disabled:!!i,onClick:Kh,title:"Whole surface (H)",children:"Whole"}),A("button",{type:"button",disabled:!!i||!Ze.value,onClick:Zh,title:"Zoom to the finding (F)",children:"Finding"}),A("button",{type:"button",disabled:!!i||!zi.value?.registered,onClick:Jh,title:"As the camera of the frame saw it (V)",children:"Camera"})]}),A("button",{type:"button","aria-pressed":as.value,disabled:!!i,onClick:()=>as.value=!as.value,title:"Camera frusta (C)",children:"Frusta"}),A("button",{type:"button","aria-pressed":ur.value,disabled:!!i,onClick:Qh,title:"Distance between two points (M)",children:"Measure"}),A("label",{class:"slide",children:["Cut ",A("input",{type:"range",min:"0",max:"1",step:"0.01",value:cu.value,disabled:!!i,"aria-label":"Clip plane: how much of the near side is cut away",onInput:s=>cu.value=Number(s.currentTarget.value)})]})]}),A("div",{class:ur.value?"stage measuring":"stage",children:i?A("div",{class:"why",role:"status",children:[A("p",{children:A("b",{children:"No surface is shown."})}),A("p",{children:i}),ie.flags.filter(s=>s.severity==="error").map(s=>A("p",{children:[s.text,s.advice?` ${s.advice}`:""]},s.code))]}):A(bt,{children:[A("canvas",{ref:n,tabIndex:0,role:"img","aria-label":"The reconstructed surface. Arrow keys turn it, plus and minus zoom.",onKeyDown:TM}),A("svg",{ref:t,class:"lines","aria-hidden":"true"}),A("div",{ref:e,class:"labels","aria-hidden":"true"}),A(AM,{}),A(wM,{}),A(CM,{})]})})]})}function EM(n,e,t){if(!zt)return;let i,r=0;const s=g=>xM(i,e,t,g);try{i=new _M(n,zt,vt,ie,()=>{s(!1),clearTimeout(r),r=window.setTimeout(()=>s(!0),120)})}catch(g){qh.value=`This browser draws no 3D here (${g instanceof Error?g.message:String(g)}). List, frames and timeline work without.`;return}Mn.value=i;const a=()=>i.resize(n.clientWidth,n.clientHeight),o=new ResizeObserver(a);o.observe(n),a();const l=Le.peek().cam;l&&(i.orbit.numbers=l);const c=uM(n,i.orbit,(g,x)=>Yh(i,g,x)),f=()=>un({cam:i.orbit.numbers.map(g=>Number(g.toPrecision(5)))},!0),d=()=>{window.setTimeout(f,300)};n.addEventListener("pointerup",d),n.addEventListener("keyup",d);let u=Le.peek().cam?Le.peek().d:null;const h=[ii(()=>{i.show({layer:Co.value,finding:Ze.value?.id??null,blade:rs.value,frame:zi.value?.index??null,frusta:as.value,clip:cu.value}),fr.value;const g=Le.value.d;g!==null&&g!==u&&Ze.value&&i.near(Ze.value,Le.peek().f),u=g}),ii(()=>{uu.value&&(i.orbit.numbers=uu.value)})];return()=>{for(const g of h)g();c(),o.disconnect(),Mn.value=null}}function Yh(n,e,t){const i=n.pick(e,t);if(i){if(ur.peek()){fr.value=[...fr.peek().length>=2?[]:fr.peek(),i.point],n.request();return}Lh(i.point,i.finding)}}function Kh(){Mn.peek()?.whole(),un({cam:null},!0)}function Zh(){Ze.peek()&&Mn.peek()?.near(Ze.peek(),Le.peek().f)}function Jh(){const n=Le.peek().f;n!==null&&Mn.peek()?.from(n)}function Qh(){ur.value=!ur.peek(),ur.peek()||(fr.value=[]),Mn.peek()?.request()}function TM(n){const e=Mn.peek()?.orbit,t=.12,r={ArrowLeft:()=>e?.turn(t,0),ArrowRight:()=>e?.turn(-t,0),ArrowUp:()=>e?.turn(0,t),ArrowDown:()=>e?.turn(0,-t),"+":()=>e?.zoom(.85),"=":()=>e?.zoom(.85),"-":()=>e?.zoom(1.18),Enter:()=>{const s=Mn.peek();s&&Yh(s,s.canvas.clientWidth/2,s.canvas.clientHeight/2)}}[n.key];!r||n.ctrlKey||n.metaKey||n.altKey||(n.preventDefault(),n.stopPropagation(),r())}function AM(){if(Co.value==="support")return A("ul",{class:"legend",children:[A("li",{children:[A("i",{class:"swatch observed"})," observed"]}),A("li",{children:[A("i",{class:"swatch weak"})," weak"]}),A("li",{children:[A("i",{class:"swatch unseen"})," not seen: no finding says nothing"]})]});const n=[...new Set(ie.defects.map(e=>e.label))].sort();return A("ul",{class:"legend",children:n.map(e=>A("li",{children:[A("svg",{width:"12",height:"12",viewBox:"-1.3 -1.3 2.6 2.6","aria-hidden":"true",children:A("path",{d:Oi.get(e)?.shape??"",fill:Oi.get(e)?.css??"gray",stroke:"#10151a","stroke-width":".2"})})," ",A("bdi",{children:e})]},e))})}function wM(){if(!ur.value)return null;const[n,e]=fr.value,t=n?e?RM(n,e):"Click the second point.":"Click the first point.";return A("p",{class:"measured",role:"status",children:t})}function RM(n,e){const{unit:t}=ie.model,i=Math.SQRT2*vt.spacing,r=Mi(Si(n,e)),s=zt?rM(zt,n,e):null,a=t==="model"?"model units (unscaled)":t,o=l=>`${l.toPrecision(3)} ± ${i.toPrecision(1)}`;return`Straight ${o(r)} ${a}${s===null?"; no path along the surface":`; along the surface ${o(Math.max(s,r))} ${a}`}`}function CM(){const n=ie.row,e=n.status==="estimated"||n.status==="user";return A("p",{class:"orientation",children:[e?A(bt,{children:["Row: ",n.status==="user"?"told by the user":"estimated"]}):A(bt,{children:["Root, tip, blades: unknown",n.reason?` (${String(n.reason).replaceAll("_"," ")})`:""]}),Ze.value&&e&&A(bt,{children:[" · D",Ze.value.id,": blade ",_u(Ze.value.blade)]})]})}class PM{constructor(e,t,i,r){this.questions=i,this.size=r,this.renderer=new ih({canvas:e,antialias:!0,alpha:!0,preserveDrawingBuffer:!0});const s=new hi(t.geometry,this.material);s.frustumCulled=!1,this.scene.add(s),this.material.uniforms.exposure.value=Gh(t.mesh.color)}questions;size;renderer;scene=new nd;material=gM();camera=new gn;draw(e,t,i,r){return this.renderer.setSize(Math.round(t),Math.round(i),!1),this.material.uniforms.layer.value=Hh(r.layer),this.material.uniforms.chosen.value=r.finding??-2,this.material.uniforms.alone.value=r.blade??0,this.aim(e)?(this.renderer.render(this.scene,this.camera),!0):(this.renderer.clear(),!1)}silhouette(e,t,i){const r=new Rn(t,i),s=new Uint8Array(t*i);if(this.aim(e)){this.renderer.setRenderTarget(r),this.renderer.clear(),this.renderer.render(this.scene,this.camera);const a=new Uint8Array(4*t*i);this.renderer.readRenderTargetPixels(r,0,0,t,i,a),this.renderer.setRenderTarget(null);for(let o=0;o<i;o++)for(let l=0;l<t;l++)s[o*t+l]=a[4*((i-1-o)*t+l)+3]>127?1:0}return r.dispose(),s}aim(e){const{lens:t,limit:i,surface:r}=this.questions,s=this.questions.poses.get(e);if(!s||!t||!r)return!1;const a=this.material.uniforms;for(let l=0;l<3;l++)a.pose.value[l].fromArray(s.m,4*l);a.focus.value.set(t.fx,t.fy,t.cx,t.cy),a.radial.value.set(...t.radial),a.tangential.value=[...t.tangential],a.extent.value=[this.size.width,this.size.height];const o=Mi(Si(s.center,r.center))+3*r.radius;return a.depths.value=[0,o],a.fold.value=Math.min(i,100),a.fisheye.value=t.fisheye,a.eye.value.set(...s.center),!0}}function Uo({label:n,px:e=14}){const t=Oi.get(n);return A("svg",{class:"mark",width:e,height:e,viewBox:"-1.3 -1.3 2.6 2.6","aria-hidden":"true",children:A("path",{d:t?.shape??"",fill:t?.css??"gray",stroke:"#10151a","stroke-width":".22"})})}function Fo({frame:n,width:e=64}){const t=ie.sprite;if(!t||!n||n.tile===null)return A("span",{class:"tile none",style:{width:`${e}px`,height:`${e*lt.height/lt.width}px`}});const i=e/t.width,[r,s]=[n.tile%t.columns,Math.floor(n.tile/t.columns)];return A("span",{class:"tile",style:{width:`${e}px`,height:`${t.height*i}px`},children:A("img",{src:t.file,alt:"",style:{width:`${t.width*t.columns*i}px`,left:`${-r*e}px`,top:`${-s*t.height*i}px`}})})}function LM({finding:n,width:e=60}){const t=ar.get($s(n.id)??-1),i=n.detections.map(o=>or.get(o)).find(o=>o!==void 0&&o.frame===t?.index),r=n.best&&n.best.frame===t?.index&&n.best.x!==null&&n.best.y!==null?n.best:null,s=r&&{x:r.x*lt.width,y:r.y*lt.height},a=i?.box??(s?[s.x-40,s.y-40,s.x+40,s.y+40]:null);return A(jh,{frame:t,box:a,width:e})}function DM({detection:n,width:e=48}){return A(jh,{frame:ar.get(n.frame??-1),box:n.box,width:e})}function jh({frame:n,box:e,width:t}){const i=t*.75;if(!n?.picture||!e)return A(Fo,{frame:n,width:t});const[r,s,a,o]=e,l=Math.min(lt.width,Math.max(60,2*(a-r),2.6*(o-s))),c=t/l,f=(d,u,h)=>Math.max(0,Math.min(h-2*u,d-u));return A("span",{class:"tile",style:{width:`${t}px`,height:`${i}px`},children:A("img",{src:n.picture,alt:"",loading:"lazy",decoding:"async",style:{width:`${lt.width*c}px`,height:`${lt.height*c}px`,left:`${-c*f((r+a)/2,l/2,lt.width)}px`,top:`${-c*f((s+o)/2,l*.75/2,lt.height)}px`}})})}const Qn=it(1),us=it(1);let xu=null;function ep(n){if(!xu&&zt)try{xu=new PM(n,zt,vt,lt)}catch{return null}return xu}const IM={outlines:"filled",filled:"off",off:"outlines"},tp=()=>{ss.value=IM[ss.peek()]};function NM(){const n=ti(null),e=ti(null),t=zi.value;Yi(()=>{const r=n.current;if(!r)return;const s=()=>{const l=Math.min(lt.width,1.03*(vt.crop[2]-vt.crop[0])),c=Math.min(lt.height,1.03*(vt.crop[3]-vt.crop[1]));us.value=Math.max(80,lt.width*Math.min(r.clientWidth/l,r.clientHeight/c)),np(r)},a=new ResizeObserver(s);a.observe(r),s();const o=ii(()=>{const l=Le.value.f,c={layer:Co.value,finding:Ze.value?.id??null,blade:rs.value},f=Math.min(2048,us.value*Qn.value*Math.min(2,window.devicePixelRatio||1));cr.value>0&&e.current&&l!==null&&ep(e.current)?.draw(l,f,f*lt.height/lt.width,c)});return()=>{a.disconnect(),o()}},[]),Yi(()=>np(n.current),[Le.value.f,Le.value.d,Qn.value,us.value]);const i=us.value*Qn.value;return A("section",{class:"panel frame","aria-label":"Frame",children:[A("div",{class:"bar",children:[A("h2",{children:["Frame ",t?t.source_index:""]}),t&&A("span",{class:"time",children:[ie.videos.length>1?`video ${t.video}, `:"",Sn(t.time_s)]}),A("div",{class:"choice",role:"group","aria-label":"Frames of the video",children:[A("button",{type:"button",onClick:()=>Zn(-1),"aria-label":"Previous frame of the video",title:"Previous frame (,)",children:"‹"}),A("button",{type:"button",onClick:()=>Zn(1),"aria-label":"Next frame of the video",title:"Next frame (.)",children:"›"})]}),A("div",{class:"choice",role:"group","aria-label":"Frames that show the selection",children:[A("button",{type:"button",disabled:!Lo.value.length,onClick:()=>Do(-1),"aria-label":"Previous frame that shows the selection",title:"Previous frame of the selection ([)",children:"«"}),A("button",{type:"button",disabled:!Lo.value.length,onClick:()=>Do(1),"aria-label":"Next frame that shows the selection",title:"Next frame of the selection (])",children:"»"})]}),A("button",{type:"button",onClick:tp,title:"Boxes and masks (X)","aria-label":`Boxes and masks: ${ss.value}; change`,children:["Boxes: ",ss.value]}),A("label",{class:"slide",children:["Overlay ",A("input",{type:"range",min:"0",max:"1",step:"0.05",value:cr.value,disabled:!t?.registered||!zt,"aria-label":"How opaque the surface lies over the frame",onInput:r=>cr.value=Number(r.currentTarget.value)})]}),A("div",{class:"choice",role:"group","aria-label":"Size of the picture",children:[A("button",{type:"button",onClick:()=>Qn.value=Math.max(.5,Qn.value/1.5),"aria-label":"Smaller picture",children:"−"}),A("button",{type:"button",onClick:()=>Qn.value=Math.min(8,Qn.value*1.5),"aria-label":"Larger picture",children:"+"})]})]}),A("div",{class:Qn.value>1?"pane large":"pane",ref:n,tabIndex:0,role:"group","aria-label":"Picture of the frame",children:A("div",{class:"picture",style:{width:`${i}px`,height:`${i*lt.height/lt.width}px`},onClick:OM,children:[t?.picture?A("img",{src:t.picture,alt:UM(),draggable:!1}):A("div",{class:"why",children:[t&&ie.sprite?A(Fo,{frame:t,width:Math.min(us.value*.5,320)}):null,A("p",{children:ie.pictures_reason??"No picture of this frame was kept."})]}),A("canvas",{ref:e,class:"over",style:{opacity:String(t?.registered?cr.value:0)},"aria-hidden":"true"}),A(BM,{width:i})]})}),A(zM,{}),A(HM,{})]})}function UM(){const n=zi.value;if(!n)return"";const e=(Bi.get(n.index)??[]).map(t=>t.label);return`Frame ${n.source_index} at ${Sn(n.time_s)}: ${e.length?e.join(", "):"no detection"}`}function np(n){const[e,t,i,r]=vt.crop,s=Qn.peek()>1&&FM()||[(e+i)/2,(t+r)/2];if(!n)return;const a=us.peek()*Qn.peek()/lt.width;n.scrollTo(s[0]*a-n.clientWidth/2,s[1]*a-n.clientHeight/2)}function FM(){const{f:n,p:e}=Le.peek();if(n===null)return null;const t=(Bi.get(n)??[]).find(r=>is.peek()?r.id===is.peek()?.id:r.defect===Ze.peek()?.id);if(t)return[(t.box[0]+t.box[2])/2,(t.box[1]+t.box[3])/2];const i=e??Ze.peek()?.centroid;return i?vt.pixelOf(n,i):null}function OM(n){const e=n.currentTarget.getBoundingClientRect();ZS((n.clientX-e.left)/e.width*lt.width,(n.clientY-e.top)/e.height*lt.height)}function BM({width:n}){const e=zi.value;if(!e)return null;const t=lt.width/Math.max(1,n),i=Ze.value?.id,{p:r}=Le.value,s=r??(Ze.value?Ze.value.centroid:null),a=s&&e.registered?vt.pixelOf(e.index,s):null,o=_i.value?.frame===e.index?_i.value:null;return A("svg",{class:"drawn",viewBox:`0 0 ${lt.width} ${lt.height}`,"aria-hidden":"true",children:[ss.value!=="off"&&(Bi.get(e.index)??[]).map(l=>{const c=Oi.get(l.label),[f,d,u,h]=l.box,g=l.defect!==null&&l.defect===i||l.id===is.value?.id,x={stroke:c?.css??"gray",fill:ss.value==="filled"?c?.css??"gray":"none"},m=l.state==="mapped"?"none":`${5*t} ${4*t}`,p=(v,M)=>l.polygon?A("polygon",{class:M,points:l.polygon.map(S=>S.join(",")).join(" "),...v}):A("rect",{class:M,x:f,y:d,width:u-f,height:h-d,...v});return A("g",{children:[p({fill:"none",stroke:"#000","stroke-opacity":.6,"stroke-width":(g?5:3.4)*t},"halo"),p({...x,"fill-opacity":.3,"stroke-width":(g?3:1.6)*t,"stroke-dasharray":m},g?"box strong":"box"),A("text",{x:f,y:Math.max(14*t,d-5*t),"font-size":12.5*t,"stroke-width":3*t,class:"name",children:[l.defect!==null?`D${l.defect} `:"",l.label]})]},l.id)}),a&&A("path",{class:"spot",d:kM(a[0],a[1],9*t),"stroke-width":1.6*t}),o&&o.shown.reason!==null&&A("path",{class:"spot miss",d:`M${o.x-7*t} ${o.y-7*t}l${14*t} ${14*t}m0 ${-14*t}l${-14*t} ${14*t}`,"stroke-width":2*t}),A("rect",{class:"used",x:vt.crop[0],y:vt.crop[1],width:vt.crop[2]-vt.crop[0],height:vt.crop[3]-vt.crop[1],"stroke-width":t,"stroke-dasharray":`${2*t} ${5*t}`})]})}function kM(n,e,t){return`M${n-t} ${e}H${n-t/3}M${n+t/3} ${e}H${n+t}M${n} ${e-t}V${e-t/3}M${n} ${e+t/3}V${e+t}`}function zM(){const n=zi.value,e=_i.value;let t="";if(n&&!n.registered)t=`Not registered: ${n.reason_text??pr(ie,n.reason??"not_registered")}. The surface cannot be laid over it.`;else if(ou)t=ou;else if(e?.shown.reason===null){const{distance:i,incidence_deg:r,finding:s,support:a}=e.shown,o=ie.model.unit==="model"?"":` ${ie.model.unit}`;t=`${s>=0?`Finding D${s}`:"The surface"}: ${Gi(i,null,ie.model.unit)}${o?"":" model units"} from the camera, seen at ${Math.round(r)}° from straight on, ${a>=.5?"well observed":"weakly observed"}.`}else e?t=`Nothing there: ${pr(ie,e.shown.reason)}.`:t="Click the picture: its place on the surface is shown. Click the surface: the frames that see it are ranked here.";return A("p",{class:"said",role:"status",children:t})}function HM(){const n=Lo.value;if(!n.length)return null;const e=Le.value.p?"this point":`D${Ze.value?.id??""}`,t=new Set(Ze.value?.detections.map(i=>or.get(i)?.frame)??[]);return A("div",{class:"ranked",role:"group","aria-label":`Frames that see ${e}, best first`,children:[A("span",{class:"lead",children:[n.length," ",n.length===1?"frame sees":"frames see"," ",e]}),A("ol",{children:n.slice(0,60).map(i=>{const r=ar.get(i.frame);return r?A("li",{children:A("button",{type:"button","aria-current":Le.value.f===i.frame,onClick:()=>Kn(i.frame),"aria-label":`Frame ${r.source_index}, view quality ${ls(i.quality)}${t.has(i.frame)?", detected there":""}`,children:[A(Fo,{frame:r,width:44}),A("small",{children:[r.source_index,t.has(i.frame)?" ■":""]})]})},i.frame):null})})]})}const Su=n=>{Ze.peek()&&(Jn.value=n)},Mu=[{group:"Findings",keys:["ArrowDown","j"],says:"next finding of the list",run:()=>hu(1)},{group:"Findings",keys:["ArrowUp","k"],says:"previous finding",run:()=>hu(-1)},{group:"Findings",keys:["Escape"],says:"select nothing",run:()=>{hr(null)}},{group:"Review",keys:["ArrowRight"],says:"next finding without a review",run:()=>Oh(1)},{group:"Review",keys:["ArrowLeft"],says:"previous finding without a review",run:()=>Oh(-1)},{group:"Review",keys:["a"],says:"accept",run:()=>Io("accept")},{group:"Review",keys:["r"],says:"reject, with a reason",run:()=>Su("reject")},{group:"Review",keys:["l"],says:"give another label",run:()=>Su("relabel")},{group:"Review",keys:["n"],says:"write a note",run:()=>Su("note")},{group:"Review",keys:["z"],says:"take the last action back",run:Fh},{group:"Frame",keys:["."],says:"next frame of the video",run:()=>Zn(1)},{group:"Frame",keys:[","],says:"previous frame of the video",run:()=>Zn(-1)},{group:"Frame",keys:["]"],says:"next frame that shows the selection",run:()=>Do(1)},{group:"Frame",keys:["["],says:"previous frame that shows the selection",run:()=>Do(-1)},{group:"Frame",keys:["b"],says:"best frame of the finding",run:()=>{Ze.peek()&&Kn($s(Ze.peek().id))}},{group:"Frame",keys:["o"],says:"surface over the frame: off, half, full",run:()=>{cr.value=cr.peek()===0?.5:cr.peek()<1?1:0}},{group:"Frame",keys:["x"],says:"boxes and masks: outlines, filled, off",run:tp},{group:"Frame",keys:["p"],says:"play or stop",run:()=>mu()},{group:"Surface",keys:["v"],says:"view from the camera of the frame",run:Jh},{group:"Surface",keys:["f"],says:"zoom to the finding",run:Zh},{group:"Surface",keys:["h"],says:"whole surface",run:Kh},{group:"Surface",keys:["1"],says:"shading by picture",run:()=>qs("picture")},{group:"Surface",keys:["2"],says:"shading by support: what was observed",run:()=>qs("support")},{group:"Surface",keys:["3"],says:"shading by finding",run:()=>qs("defect")},{group:"Surface",keys:["4"],says:"shading by blade",run:()=>{zt?.mesh.blade.some(n=>n>0)&&qs("blade")}},{group:"Surface",keys:["c"],says:"camera frusta",run:()=>{as.value=!as.peek()}},{group:"Surface",keys:["m"],says:"measure: Enter or a click sets a point",run:Qh},{group:"Surface",keys:["+"],says:"nearer",run:()=>Mn.peek()?.orbit.zoom(.85)},{group:"Surface",keys:["-"],says:"farther",run:()=>Mn.peek()?.orbit.zoom(1.18)},{group:"Page",keys:["?"],says:"this list",run:()=>{Yn.value=!Yn.peek()}}],ip="bladeatlas keys off",yu=it(VM());function GM(n){yu.value=n;try{localStorage.setItem(ip,n?"":"1")}catch{}}function VM(){try{return localStorage.getItem(ip)!=="1"}catch{return!0}}function WM(){document.addEventListener("keydown",n=>{if(n.ctrlKey||n.metaKey||n.altKey||n.defaultPrevented)return;const e=n.target,t=e.matches("input:not([type=range],[type=checkbox]), select, textarea"),i=e.matches("input[type=range]")&&n.key.startsWith("Arrow");if(t||i||Yn.peek()&&n.key!=="?"&&n.key!=="Escape")return;if(n.key==="Escape")return Yn.peek()?void(Yn.value=!1):(Hi.value=!1,Jn.value=null,Le.peek().d!==null||Le.peek().p?hr(null):un({n:null},!0));if(!yu.peek()&&n.key!=="?")return;const r=Mu.find(({keys:s})=>s.includes(n.key)||s.includes(n.key.toLowerCase()));r&&(n.preventDefault(),r.run())})}function XM(){const[n,e]=[Ze.value,is.value];return A("section",{class:"panel detail","aria-label":"Selection",children:[n?A($M,{one:n}):e?A(qM,{own:e}):A("p",{class:"note",children:"Nothing is selected. Choose a finding, click the surface, or click a box of the frame."}),ie.defects.length>0&&A(JM,{})]})}function $M({one:n}){const e=Ss(fn.value,n.id),t=n.length_unit??n.size_unit??ie.model.unit,i=Ro.get(n.id)??[];return A(bt,{children:[A("h2",{children:[A(Uo,{label:n.label})," D",n.id," ",A("bdi",{children:n.label}),e.label&&A("span",{class:"human",children:[" → ",A("bdi",{children:e.label})]})]}),A(KM,{one:n}),A("dl",{children:[A(rn,{name:"Size",children:[Gi(n.size,n.size_sigma,t)," ",A(YM,{unit:t})]}),n.length!==void 0&&A(rn,{name:"Length × width",children:[Gi(n.length,n.length_sigma,t)," × ",Gi(n.width,n.width_sigma,t)]}),n.area!==void 0&&n.area!==null&&A(rn,{name:"Area",children:Gi(n.area,n.area_sigma,t==="model"?"model":`${t}²`)}),n.depth!==void 0&&n.depth!==null&&A(rn,{name:"Depth",children:Gi(n.depth,n.depth_sigma,t)}),A(rn,{name:"Blade",children:[_u(n.blade),n.side?`, ${n.side.replaceAll("_"," ")}`:"",Number(n.blade)>0&&zt?.mesh.blade.some(r=>r===Number(n.blade))&&A("button",{type:"button",class:"link",onClick:()=>un({b:rs.value===null?Number(n.blade):null},!0),children:rs.value===null?"show it alone":"show all"})]}),n.span!==void 0&&A(rn,{name:"Span, chord",children:[rp(n.span,n.span_sigma),", ",rp(n.chord,n.chord_sigma)]}),n.root_distance!==void 0&&n.root_distance!==null&&A(rn,{name:"From the root",children:Gi(n.root_distance,n.root_distance_sigma,t)}),A(rn,{name:"Persistence",children:["detected in ",n.persistence.k," of the ",n.persistence.n," frames that could show it"]}),A(rn,{name:"Place",children:[n.centroid.map(r=>r.toFixed(3)).join(", "),n.centroid_sigma?` ± ${n.centroid_sigma.toPrecision(2)}`:""]})]}),A("h3",{children:"Visits"}),A("ul",{class:"chips",children:i.map(r=>A("li",{children:A("button",{type:"button",onClick:()=>QS(r.start_s,r.end_s,r.video??0),"aria-label":`Play the visit from ${Sn(r.start_s)} to ${Sn(r.end_s)}`,children:["▶ ",ie.videos.length>1?`video ${r.video??0}, `:"",Sn(r.start_s)," to ",Sn(r.end_s)," · ",r.n_detections]})},r.event_id))}),A("h3",{children:"Best frames"}),A("ul",{class:"chips",children:n.best_frames.map((r,s)=>A("li",{children:A("button",{type:"button","aria-current":Le.value.f===r,onClick:()=>Kn(r),children:[s===0?"best: ":"","frame ",ar.get(r)?.source_index??r]})},r))}),A("h3",{children:["Confidence ",n.confidence?`${ls(n.confidence.value)}, ${gu(n.confidence.value)}`:"unknown"]}),A("ul",{class:"reasons",children:nM(n).map(r=>A("li",{children:r},r))}),e.notes.length>0&&A(bt,{children:[A("h3",{children:"Notes"}),A("ul",{class:"reasons",children:e.notes.map((r,s)=>A("li",{children:A("bdi",{children:r})},s))})]})]})}function qM({own:n}){return A(bt,{children:[A("h2",{children:[A(Uo,{label:n.label})," Detection ",n.id," ",A("bdi",{children:n.label})]}),A("dl",{children:[A(rn,{name:"State",children:n.state}),n.reason&&A(rn,{name:"Why",children:pr(ie,n.reason)}),n.score!==null&&n.score!==void 0&&A(rn,{name:"Detector's score",children:n.score.toFixed(2)}),n.confidence!==null&&A(rn,{name:"Confidence",children:ls(n.confidence)}),n.frame===null&&A(rn,{name:"Frame",children:"no frame of the run shows it"})]})]})}function rn({name:n,children:e}){return A("div",{children:[A("dt",{children:n}),A("dd",{children:e})]})}function YM({unit:n}){return n==="model"?A("small",{children:"model units, unscaled"}):null}function rp(n,e){return n==null?"unknown":`${ls(n)}${e?` ± ${Math.max(1,Math.round(100*e))}`:""}`}function KM({one:n}){const e=Ss(fn.value,n.id);return A("div",{class:"review-bar",role:"group","aria-label":"Review",children:[A("button",{type:"button","aria-pressed":e.state==="accepted",onClick:()=>Io("accept"),title:"Accept (A)",children:"Accept"}),A("button",{type:"button","aria-pressed":e.state==="rejected",onClick:()=>Jn.value="reject",title:"Reject (R)",children:["Reject",e.state==="rejected"&&e.reason?`: ${e.reason}`:""]}),A("button",{type:"button",onClick:()=>Jn.value="relabel",title:"Label (L)",children:"Label"}),A("button",{type:"button",onClick:()=>Jn.value="note",title:"Note (N)",children:"Note"}),A("button",{type:"button",disabled:!fn.value.length,onClick:Fh,title:"Take back (Z)",children:"Undo"}),Jn.value&&A(ZM,{what:Jn.value,label:n.label})]})}function ZM({what:n,label:e}){const t=ti(null);Ap(()=>t.current?.focus(),[n]);const i=s=>{s.preventDefault();const a=t.current?.value.trim()??"";n==="reject"?Io("reject",null,a):a&&Io(n,a),Jn.value=null};return A("form",{class:"ask",onSubmit:i,onKeyDown:s=>{s.key==="Escape"?(s.stopPropagation(),Jn.value=null):s.key==="Enter"&&s.target===t.current&&i(s)},children:[A("label",{children:[n==="reject"?"Why is it rejected?":n==="relabel"?"The right label":"Note",n==="reject"?A("select",{ref:t,children:Op.map(s=>A("option",{children:s},s))}):A("input",{ref:t,type:"text",maxLength:n==="note"?2e3:100,defaultValue:n==="relabel"?e:"",list:n==="relabel"?"known-labels":void 0})]}),n==="relabel"&&A("datalist",{id:"known-labels",children:[...new Set(ie.detections.map(s=>s.label))].map(s=>A("option",{value:s},s))}),A("button",{type:"submit",children:"Keep"}),A("button",{type:"button",onClick:()=>Jn.value=null,children:"Leave"})]})}function JM(){return A("p",{class:"exports",children:[A("span",{children:["Reviewed ",Uh.value.done," of ",Uh.value.all,"."]}),A("button",{type:"button",disabled:!fn.value.length,onClick:jS,children:"Save review.json"}),!Nh.value&&A("span",{class:"warn",children:"This browser keeps nothing for this page: save before you close it."})]})}const QM={ArrowDown:"↓",ArrowUp:"↑",ArrowLeft:"←",ArrowRight:"→",Escape:"Esc"};function jM(){const n=ti(null);return Yi(()=>{Yn.value?n.current?.showModal():n.current?.close()},[Yn.value]),A("dialog",{ref:n,"aria-labelledby":"help",onClose:()=>Yn.value=!1,children:[A("h2",{id:"help",children:"Keys"}),A("div",{class:"keys",children:[...new Set(Mu.map(e=>e.group))].map(e=>A("section",{"aria-label":e,children:[A("h3",{children:e}),A("dl",{children:Mu.filter(t=>t.group===e).map(t=>A("div",{children:[A("dt",{children:t.keys.map(i=>A("kbd",{children:QM[i]??i.toUpperCase()},i))}),A("dd",{children:t.says})]},t.says))})]},e))}),A("p",{children:"On the surface arrows turn the view; on the timeline they step frames. Drag turns, right drag or shift drag shifts, the wheel zooms."}),A("p",{children:A("label",{class:"check",children:[A("input",{type:"checkbox",checked:yu.value,onChange:e=>GM(e.currentTarget.checked)})," single keys act"]})}),A("button",{type:"button",onClick:()=>Yn.value=!1,children:"Close"})]})}const ey={findings:"Findings",frames:"Frames",detections:"Detections"},ty={findings:ie.defects.length,frames:ie.frames.length,detections:ie.detections.length};function ny(){return A("section",{class:"panel list","aria-label":"Lists",children:[A("div",{class:"tabs",role:"tablist","aria-label":"What is listed",onKeyDown:iy,children:ts.map(n=>A("button",{role:"tab",id:`tab-${n}`,type:"button","aria-selected":ns.value===n,"aria-controls":"listed",tabIndex:ns.value===n?0:-1,onClick:()=>Dh(n),children:[ey[n]," ",A("span",{class:"count",children:ty[n]})]},n))}),A("div",{id:"listed",class:"listed",role:"tabpanel","aria-labelledby":`tab-${ns.value}`,children:ns.value==="findings"?A(ry,{}):ns.value==="frames"?A(ly,{}):A(cy,{})})]})}function iy(n){const e=n.key==="ArrowRight"?1:n.key==="ArrowLeft"?-1:0;if(!e)return;n.preventDefault(),n.stopPropagation();const t=ts[(ts.indexOf(ns.value)+e+ts.length)%ts.length];Dh(t),document.getElementById(`tab-${t}`)?.focus()}function bu(n){const e=ti(null);return Yi(()=>e.current?.scrollIntoView({block:"nearest"}),[n]),t=>{t&&(e.current=t)}}function ry(){const n=Ys.value,e=bu(Le.value.d);return ie.defects.length?A(bt,{children:[A(oy,{shown:n.length}),A("ul",{class:"rows",children:n.map(t=>{const i=Ze.value?.id===t.id,r=pu.value.get(t.id),s=Ro.get(t.id)?.length??t.events.length;return A("li",{children:A("button",{type:"button",class:"row","aria-current":i,ref:i?e:null,onClick:()=>hr(t.id),children:[A(LM,{finding:t}),A("span",{class:"what",children:[A("span",{class:"head",children:[A(Uo,{label:t.label})," ",A("b",{children:["D",t.id]})," ",A("bdi",{class:"label",children:t.label}),r&&A("span",{class:`review ${r}`,children:r})]}),A("span",{class:"facts",children:[A("span",{children:[t.length!==null&&t.length!==void 0?"length":"size"," ",Gi(t.length??t.size,t.length===null||t.length===void 0?t.size_sigma:t.length_sigma,t.length_unit??t.size_unit??ie.model.unit)]}),A("span",{children:["blade ",_u(t.blade)]}),A("span",{title:`Detected in ${t.persistence.k} of the ${t.persistence.n} frames that could show it`,children:["seen ",t.persistence.k,"/",t.persistence.n]}),A("span",{children:[s," ",s===1?"visit":"visits"]})]})]}),A("span",{class:`sure ${t.confidence?gu(t.confidence.value):""}`,children:t.confidence?A(bt,{children:[ls(t.confidence.value),A("small",{children:gu(t.confidence.value)})]}):A("small",{children:"no confidence"})})]})},t.id)})})]}):A(sy,{})}function sy(){const n=new Map;for(const e of ie.detections)e.state==="unplaced"&&n.set(e.reason??"unknown",(n.get(e.reason??"unknown")??0)+1);return A("div",{class:"empty",children:[A("p",{children:A("b",{children:"No finding is on the surface."})}),ie.message&&A("p",{children:ie.message}),ie.detections.length===0?A("p",{children:"The annotations hold no detection inside the video."}):A("p",{children:[ay(ie.detections.length,"detection")," read. ",n.size>0&&"Without a place:"]}),A("ul",{children:[...n].sort((e,t)=>t[1]-e[1]).map(([e,t])=>A("li",{children:[t,": ",pr(ie,e)]},e))}),ie.models.length>0&&A("p",{children:"The findings of other models are on their own pages, linked above."})]})}function ay(n,e){return`${n} ${e}${n===1?" was":"s were"}`}function oy({shown:n}){const e=r=>s=>{dr.value={...dr.value,[r]:s.currentTarget.value}},t=[...new Set(ie.defects.map(r=>r.label))].sort(),i=[...new Set(ie.defects.map(r=>String(r.blade??"")).filter(Boolean))].sort((r,s)=>r.localeCompare(s,"en",{numeric:!0}));return A("div",{class:"filters",children:[A("label",{children:["Sort",A("select",{value:fu.value,onChange:r=>fu.value=r.currentTarget.value,children:Object.entries(qS).map(([r,s])=>A("option",{value:r,children:s},r))})]}),A("button",{type:"button",class:"square",onClick:()=>Xs.value=!Xs.value,"aria-label":Xs.value?"Largest first; sort the other way":"Smallest first; sort the other way",children:Xs.value?"↓":"↑"}),A("label",{children:["Label",A("select",{value:dr.value.label,onChange:e("label"),children:[A("option",{value:"",children:"all"}),t.map(r=>A("option",{value:r,children:r},r))]})]}),i.length>0&&A("label",{children:["Blade",A("select",{value:dr.value.blade,onChange:e("blade"),children:[A("option",{value:"",children:"all"}),i.map(r=>A("option",{value:r,children:r},r))]})]}),A("label",{children:["Confidence",A("select",{value:dr.value.confidence,onChange:e("confidence"),children:[A("option",{value:"",children:"any"}),A("option",{value:"0.4",children:"at least medium"}),A("option",{value:"0.75",children:"high"})]})]}),A("label",{children:["Review",A("select",{value:dr.value.review,onChange:e("review"),children:[A("option",{value:"",children:"any"}),A("option",{value:"open",children:"open"}),A("option",{value:"accepted",children:"accepted"}),A("option",{value:"rejected",children:"rejected"})]})]}),A("output",{"aria-live":"polite",children:[n," of ",ie.defects.length]})]})}function ly(){const n=bu(Le.value.f),e=ie.frames.filter(t=>t.registered).length;return A(bt,{children:[A("p",{class:"note",children:[e," of ",ie.frames.length," frames have a camera in this model."]}),A("ul",{class:"rows",children:Rt.map(t=>{const i=zi.value?.index===t.index,r=Bi.get(t.index)?.length??0;return A("li",{children:A("button",{type:"button",class:"row slim","aria-current":i,ref:i?n:null,onClick:()=>Kn(t.index),children:[A(Fo,{frame:t,width:48}),A("span",{class:"what",children:[A("span",{class:"head",children:[A("b",{children:["Frame ",t.source_index]})," ",ie.videos.length>1&&A("span",{children:["video ",t.video]})," ",A("span",{children:Sn(t.time_s)})]}),A("span",{class:"facts",children:[A("span",{children:r?`${r} ${r===1?"detection":"detections"}`:"no detection"}),!t.registered&&A("span",{class:"warn",children:["not registered: ",t.reason_text??pr(ie,t.reason??"not_registered")]})]})]})]})},t.index)})})]})}function cy(){const n=bu(Le.value.n),e=ie.detections.filter(i=>i.state==="unplaced").length,t=Po.value?ie.detections.filter(i=>i.state==="unplaced"):ie.detections;return A(bt,{children:[A("div",{class:"filters",children:[A("label",{class:"check",children:[A("input",{type:"checkbox",checked:Po.value,onChange:()=>Po.value=!Po.value})," without a place (",e,")"]}),A("output",{"aria-live":"polite",children:[t.length," of ",ie.detections.length]})]}),A("ul",{class:"rows",children:t.map(i=>{const r=is.value?.id===i.id;return A("li",{children:A("button",{type:"button",class:"row slim","aria-current":r,ref:r?n:null,onClick:()=>du(i.id),children:[A(DM,{detection:i}),A("span",{class:"what",children:[A("span",{class:"head",children:[A(Uo,{label:i.label,px:12})," ",A("bdi",{class:"label",children:i.label})," ",i.time_s!==void 0&&A("span",{children:Sn(i.time_s)})," ",i.defect!==null&&A("b",{children:["D",i.defect]})]}),A("span",{class:"facts",children:A("span",{class:i.state==="mapped"?"":"warn",children:[i.state,i.reason?`: ${pr(ie,i.reason)}`:""]})})]})]})},i.id)})})]})}function uy(){return rs.value===null?null:A("button",{type:"button",onClick:()=>un({b:null},!0),children:["Only blade ",rs.value," is shown: show all"]})}const fs=it(800),Oo=124,Wi=18,Bo=46,ko=Math.max(lr[lr.length-1]??0,.001),dn=(n,e)=>Oo+((lr[n]??0)+e)/ko*(fs.value-Oo-12),fy=Rt.map((n,e)=>{const t=Rt[e+1];return t&&t.video===n.video?t.time_s-n.time_s:ko-(lr[n.video]??0)-n.time_s||.05});function dy(){const n=ti(null);Yi(()=>{const i=n.current;if(!i)return;const r=()=>{fs.value=Math.max(240,i.clientWidth)},s=new ResizeObserver(r);return s.observe(i),r(),()=>s.disconnect()},[]),Yi(()=>{const i=Ys.peek().findIndex(a=>a.id===Ze.peek()?.id),r=n.current;if(!r||i<0)return;const s=Bo+Wi*i;(s<r.scrollTop||s+Wi>r.scrollTop+r.clientHeight)&&(r.scrollTop=s-r.clientHeight/2)},[Ze.value]);const e=zi.value,t=Bo+Wi*Math.max(1,Ys.value.length)+6;return A("section",{class:"panel timeline","aria-label":"Timeline",children:[A("div",{class:"bar",children:[A("h2",{children:"Timeline"}),A("button",{type:"button","aria-pressed":Hi.value,onClick:()=>mu(),title:"Play (P)",children:Hi.value?"Stop":"Play"}),A("span",{class:"time",children:e?`${Sn(e.time_s)}, frame ${e.source_index}`:"no frame"}),A("span",{class:"key",children:[A("i",{class:"swatch registered"})," registered ",A("i",{class:"swatch lost"})," not registered ",A("i",{class:"swatch detected"})," detection ",A("i",{class:"swatch visit"})," visit to a finding"]})]}),A("div",{class:"tracks",ref:n,tabIndex:0,role:"slider","aria-label":"Playhead","aria-orientation":"horizontal","aria-valuemin":0,"aria-valuemax":Math.max(0,Rt.length-1),"aria-valuenow":e?ki.get(e.index)??0:0,"aria-valuetext":e?`Frame ${e.source_index}, ${Sn(e.time_s)}`:"no frame",onKeyDown:vy,onPointerDown:ap,onPointerMove:i=>i.buttons===1&&ap(i),children:A("svg",{width:fs.value,height:t,"aria-hidden":"true",children:[A(hy,{height:t,wide:fs.value}),A(py,{chosen:Ze.value?.id??null,rows:Ys.value,wide:fs.value}),e&&A("path",{class:"playhead under",d:`M${dn(e.video,e.time_s)} 4V${t}`}),e&&A("path",{class:"playhead",d:`M${dn(e.video,e.time_s)} 4V${t}M${dn(e.video,e.time_s)-5} 2h10l-5 8z`})]})})]})}function sp(n){let e=null;return t=>{const i=Object.keys(t);return(!e||i.some(r=>e?.props[r]!==t[r]))&&(e={props:t,drawn:n(t)}),e.drawn}}const hy=sp(({height:n})=>A("g",{children:[A("defs",{children:A("pattern",{id:"lost",width:"6",height:"6",patternUnits:"userSpaceOnUse",patternTransform:"rotate(45)",children:[A("rect",{width:"6",height:"6",fill:"#fff"}),A("rect",{width:"3",height:"6",fill:"#d98c1f"})]})}),A(my,{height:n}),A("text",{class:"lane",x:"4",y:"27",children:"cameras"}),A("text",{class:"lane",x:"4",y:"41",children:"detections"}),Rt.map((e,t)=>A("rect",{class:e.registered?"registered":"lost",x:dn(e.video,e.time_s),y:"18",width:Math.max(1,dn(e.video,e.time_s+(fy[t]??0))-dn(e.video,e.time_s)),height:"11",children:!e.registered&&A("title",{children:`Frame ${e.source_index}: ${e.reason_text??pr(ie,e.reason??"not_registered")}`})},e.index)),Rt.map(e=>{const t=Bi.get(e.index)??[];if(!t.length)return null;const i=t.every(r=>r.state==="mapped");return A("rect",{class:i?"detected":"detected some",x:dn(e.video,e.time_s)-1,y:"33",width:"2.4",height:"8",children:A("title",{children:`${t.length} detections in frame ${e.source_index}${i?"":", some without a place"}`})},`n${e.index}`)})]})),py=sp(({chosen:n,rows:e,wide:t})=>A("g",{children:[e.map((i,r)=>{const s=Bo+Wi*r,a=Oi.get(i.label);return A("g",{class:n===i.id?"track chosen":"track",children:[n===i.id&&A("rect",{class:"ground",x:"0",y:s,width:t,height:Wi}),A("path",{class:"mark",transform:`translate(11 ${s+Wi/2}) scale(5)`,d:a?.shape??"",fill:a?.css??"gray"}),A("text",{class:"lane",x:"21",y:s+13,"data-finding":i.id,children:_y(`D${i.id} ${i.label}`)}),(Ro.get(i.id)??[]).map(o=>{const l=dn(o.video??0,o.start_s);return A("rect",{class:"visit","data-finding":i.id,"data-time":o.start_s,x:l-2,y:s+3,width:Math.max(5,dn(o.video??0,o.end_s)-l+4),height:Wi-6,rx:"3",style:{fill:a?.css??"gray"},children:A("title",{children:`D${i.id} from ${Sn(o.start_s)} to ${Sn(o.end_s)}: ${o.n_detections} detections`})},o.event_id)}),i.detections.map(o=>{const l=ar.get(or.get(o)?.frame??-1);return l?A("rect",{class:"tick",x:dn(l.video,l.time_s)-.6,y:s+5,width:"1.2",height:Wi-10},o):null})]},`d${i.id}`)}),!e.length&&A("text",{class:"lane",x:Oo,y:Bo+13,children:"No finding has a visit here."})]}));function my({height:n}){const e=[.5,1,2,5,10,20,30,60,120,300,600,1800].find(i=>ko/i<=Math.max(4,fs.value/90))??3600,t=[];for(let i=0;i<lr.length-1;i++){const r=(lr[i+1]??ko)-(lr[i]??0);i&&t.push(A("path",{class:"border",d:`M${dn(i,0)} 0V${n}`},`v${i}`));for(let s=0;s<=r+1e-6;s+=e){const a=dn(i,s);t.push(A("g",{children:[A("path",{class:"grid",d:`M${a} 14V${n}`}),A("text",{class:"scale",x:a+2,y:"12",children:ie.videos.length>1&&s===0?`video ${i}`:`${Number(s.toFixed(1))} s`})]},`${i}-${s}`))}}return A(bt,{children:t})}function gy(n){const e=Rt.filter(t=>Bi.get(t.index)?.some(i=>i.defect===n));return e.length?new Set(e.map(t=>t.index)):null}function _y(n){return n.length>14?`${n.slice(0,13)}…`:n}function vy(n){const t={ArrowLeft:()=>Zn(-1),ArrowDown:()=>Zn(-1),ArrowRight:()=>Zn(1),ArrowUp:()=>Zn(1),PageDown:()=>Zn(-10),PageUp:()=>Zn(10),Home:()=>Kn(Rt[0]?.index??null),End:()=>Kn(Rt[Rt.length-1]?.index??null)}[n.key];!t||n.ctrlKey||n.metaKey||n.altKey||(n.preventDefault(),n.stopPropagation(),t())}function ap(n){const e=n.currentTarget.getBoundingClientRect(),t=n.clientX-e.left,i=n.target,r=n.type==="pointerdown"?i.getAttribute("data-finding"):null;let s=null,a=1/0;const o=r!==null&&i.hasAttribute("data-time")?gy(Number(r)):null;for(const l of Rt){if(o&&!o.has(l.index))continue;const c=Math.abs(dn(l.video,l.time_s)-t);c<a&&([s,a]=[l.index,c])}if(r!==null){const l=i.hasAttribute("data-time");hr(Number(r),l&&s!==null?{frame:s}:{});return}if(!(t<Oo-8||s===null)){if(n.type==="pointerdown"&&n.offsetY>30&&n.offsetY<43){const l=Bi.get(s)?.[0];if(l)return du(l.id)}Kn(s,!0)}}const xy={ok:"ok: the checks found nothing that speaks against the model",suspect:"suspect: read the warnings before you trust a place or a size",refused:"refused: no model can be trusted"};function Sy(){return wo?A("main",{class:"broken",children:[A("h1",{children:"Nothing can be shown"}),A("p",{role:"alert",children:wo})]}):A(bt,{children:[A(My,{}),A("main",{class:"grid",children:[A("div",{class:"side",children:[A(ny,{}),A(XM,{})]}),A(bM,{}),A(NM,{}),A(dy,{})]}),A("p",{class:"spoken","aria-live":"polite",children:os.value}),A(jM,{})]})}function My(){const{title:n,verdict:e,message:t,flags:i,model:r,models:s}=ie,a=i.filter(o=>o.severity!=="info");return A("header",{children:[A("h1",{children:A("bdi",{children:n})}),A("p",{class:"lead",children:[A("span",{class:`verdict ${e}`,title:xy[e]??"",children:e})," ",ie.defects.length," ",ie.defects.length===1?"finding":"findings",", ",ie.detections.length," ",ie.detections.length===1?"detection":"detections",", ",ie.frames.length," frames",r.unit==="model"?", unscaled":`, in ${r.unit}`]}),s.length>0&&A("nav",{"aria-label":"Models",children:[A("span",{children:["Model ",r.index," of ",r.count,"; the others: "]}),s.map(o=>A("a",{href:yy(o.href),children:["model ",o.index]},o.index))]}),A(uy,{}),(i.length>0||t)&&A("details",{class:"flags",open:e==="refused",children:[A("summary",{children:a.length||i.length?`${i.length} ${i.length===1?"remark":"remarks"} of the checks`:"What happened"}),t&&A("p",{children:t}),A("ul",{children:i.map((o,l)=>A("li",{class:o.severity,children:[A("b",{children:o.severity})," ",o.text,o.where?` (${o.where})`:"",".",o.advice?` ${o.advice}`:""]},l))})]}),A("button",{type:"button",class:"help",onClick:()=>Yn.value=!0,"aria-label":"Keys",title:"Keys (?)",children:"?"})]})}function yy(n){return/^(\.\.\/)*[\w./-]+$/.test(n)&&!n.startsWith("/")?n:"#"}JS();const Eu=document.getElementById("app");Eu&&(Eu.replaceChildren(),Ep(A(Sy,{}),Eu)),WM();const by={ready:!0,place:()=>Le.peek(),pointAt:(n,e,t)=>vt.pointAt(n,e,t),framesSeeing:n=>{const e=zt?.nearest(n);return e?vt.framesSeeing(e.point,e.normal):[]},silhouette:(n,e,t)=>Array.from(ep(document.createElement("canvas"))?.silhouette(n,e,t)??[]).join(""),camera:()=>Mn.peek()?.orbit.numbers??null,onCanvas:n=>Mn.peek()?.screen(n,!0)??null,findings:ie.defects.length};window.bladeatlas=by})();

@@ -22,7 +22,7 @@ from core.annotations.summary import advice
 from core.errors import BadInput
 from core.settings.reading import InputSettings
 from core.video.probe import probe_video
-from core.video.table import FrameRow, FrameTable, VideoInfo
+from core.video.table import FrameTable, ListedFrame, VideoInfo
 from tests.core.making_videos import make_video
 from tests.inputs import INPUTS
 
@@ -36,7 +36,7 @@ def table_of(times_ms: list[int], first: int = 0) -> FrameTable:
     rate = Fraction(1000 * (len(times_ms) - 1), times_ms[-1])
     end = float(Fraction(times_ms[-1], 1000) + 1 / rate)
     info = VideoInfo(100, 100, 0, False, rate, Fraction(1, 1000), end, len(times_ms), "h264", "", False)
-    return FrameTable(info, tuple(FrameRow(i, first + t, t / 1000, True, "") for i, t in enumerate(times_ms)))
+    return FrameTable(info, tuple(ListedFrame(i, first + t, t / 1000, True, "") for i, t in enumerate(times_ms)))
 
 
 def replace_rate(table: FrameTable, declared: Fraction) -> FrameTable:

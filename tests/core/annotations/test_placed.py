@@ -16,7 +16,7 @@ from core.errors import BadInput
 from core.io.annotations import read_detections, read_looked_at, read_masks, write_annotations
 from core.scene.detection import Mask
 from core.scene.frame import Crop, SourceFrame
-from core.video.table import FrameRow, FrameTable, VideoInfo
+from core.video.table import FrameTable, ListedFrame, VideoInfo
 
 DENT = {"label": "dent", "score": 0.5, "bbox": [0.2, 0.2, 0.4, 0.4]}
 TRIANGLE = [[0.1, 0.1], [0.3, 0.1], [0.2, 0.3]]
@@ -28,7 +28,7 @@ def table_of(times_ms: list[int], *, truncated: bool = False) -> FrameTable:
         100, 100, 0, False, rate, Fraction(1, 1000), float(Fraction(times_ms[-1], 1000) + 1 / rate), len(times_ms),
         "h264", "", truncated,
     )  # fmt: skip
-    return FrameTable(info, tuple(FrameRow(i, t, t / 1000, True, "") for i, t in enumerate(times_ms)))
+    return FrameTable(info, tuple(ListedFrame(i, t, t / 1000, True, "") for i, t in enumerate(times_ms)))
 
 
 def entries(*keys: str) -> dict[str, object]:

@@ -13,12 +13,12 @@ from core.errors import BadInput
 from core.frames.sampling import Interval, Stretch, choose_frames, clip_interval, sample_uniformly
 from core.scene.frame import Role
 from core.settings import make_settings
-from core.video.table import FrameRow, FrameTable, VideoInfo
+from core.video.table import FrameTable, ListedFrame, VideoInfo
 
 
 def table_of(times: list[Fraction], rate: Fraction) -> FrameTable:
     unit = Fraction(1, 90_000)
-    rows = tuple(FrameRow(i, round(t / unit), float(t), i == 0, f"{i:064x}") for i, t in enumerate(times))
+    rows = tuple(ListedFrame(i, round(t / unit), float(t), i == 0, f"{i:064x}") for i, t in enumerate(times))
     info = VideoInfo(960, 720, 0, False, rate, unit, float(times[-1] + 1 / rate), len(rows), "h264", "0" * 64, False)
     return FrameTable(info, rows)
 

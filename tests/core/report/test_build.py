@@ -20,7 +20,8 @@ COLUMNS = {
     "cases.csv": "name kind start end status reason frames models registered_images points3D "
     "mean_reprojection_error_px median_reprojection_error_px seconds start_mode selected vetoed",
     "mapping/detections.csv": "id key time_s label score box_x1 box_y1 box_x2 box_y2 frame_index outcome reason rung "
-    "support_points x y z confidence blade defect_id model video",
+    "support_points x y z confidence blade defect_id model video "
+    "length length_sigma width width_sigma area area_sigma length_unit size_from",
     "mapping/timeline.csv": "event_id defect_id label start_s end_s n_detections n_frames x y z radius confidence "
     "video",
 }

@@ -39,7 +39,7 @@ def test_says_what_ran_with_what() -> None:
     summary = build_report(full_record("draft")).summary
     assert summary["parameters"]["preset"] == "draft"
     assert summary["parameters"]["features"]["max_keypoints"] == 2048
-    assert summary["scale"] == {"unit": "model", "value": None, "sigma": None}
+    assert summary["scale"] == {"unit": "model", "value": None, "sigma": None, "source": None}
     assert (summary["inputs"]["video"], summary["versions"]["bladeatlas"]) == ("aa", "0.1.0")
     assert (summary["failed_stage"], summary["reason"]) == (None, None)
     assert summary["headline"]["mapped"] == 3

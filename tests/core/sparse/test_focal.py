@@ -8,9 +8,11 @@ from typing import Any
 
 import pytest
 
-from core.features.io import write_features
+from core.features.io import FrameFeatures, write_features
 from core.graph import STAGES
+from core.io.frames import write_frames
 from core.matching.keyframes import Keyframes, write_keyframes
+from core.scene.frame import Crop, Frame, Role, RunFrames
 from core.settings import make_settings, only_declared
 from core.sparse import focal as search
 from core.sparse.focal import GAPS, SpanFocal, choose_spans, find_focal, joined
@@ -42,11 +44,15 @@ def task(scene: Scene, folder: Path, fov_deg: float) -> StageTask:
         "source_height": HEIGHT,
         "n_search": len(scene.features),
     }
+    table = folder / "frames"
+    if not table.exists():
+        table.mkdir()
+        all_of_one = (Frame(i, i, i, i / 30, "", Role.SAMPLED) for i in range(len(scene.features)))
+        write_frames(table, RunFrames(tuple(all_of_one)), Crop(0, 0, WIDTH, HEIGHT, WIDTH, HEIGHT))
     whole = make_settings("default", {"camera.focal_span": 14, "camera.focal_spans": 1})
     settings = only_declared(whole, STAGES["focal"].settings)  # as in a run
-    return StageTask(
-        "focal", {"fov_deg": fov_deg}, settings, {"features/000": features}, {"frames": frames}, (), folder
-    )
+    inputs = {"features/000": features, "frames": table}
+    return StageTask("focal", {"fov_deg": fov_deg}, settings, inputs, {"frames": frames}, (), folder)
 
 
 @pytest.mark.parametrize("wrong", [0.6, 1.25])
@@ -78,6 +84,20 @@ def test_spans_cover_sections_and_short_clips() -> None:
     assert first[-1] < 15 <= second[0]
     assert second[-1] < 30
     assert choose_spans(range(8), 30, 2, lambda index: features[index]) == [tuple(range(8))]
+
+
+def test_no_span_reaches_over_a_cut_between_two_videos() -> None:
+    features = make_scene(30, 200).features
+    videos = [0] * 17 + [1] * 13
+
+    def load(index: int) -> FrameFeatures:
+        return features[index]
+
+    for length, count in ((10, 1), (10, 2), (14, 2), (30, 1)):
+        for span in choose_spans(range(30), length, count, load, videos):
+            assert len({videos[frame] for frame in span}) == 1
+            assert len(span) >= min(length, 13)
+    assert choose_spans(range(30), 30, 1, load, videos) == [tuple(range(17))]
 
 
 def test_spans_consist_of_keyframes() -> None:

@@ -29,14 +29,15 @@ Adjusted = tuple[float, Scene, pycolmap.Reconstruction, pycolmap.DatabaseCache, 
 SETTINGS = MapperSettings(search_tracks=0)
 OPTIONS = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
 HIGHLIGHTS, NONE = 0.04, 0.0
+N = 24
 
 
 @pytest.fixture(scope="module", params=[HIGHLIGHTS, NONE], ids=["highlights", "metal"])
 def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Adjusted:
     """The scene, its model before and the adjustments without and with the choice of tracks."""
-    scene = make_scene(36, drift=request.param)
+    scene = make_scene(N, drift=request.param)
     graph = write_graph(tmp_path_factory.mktemp("trimming") / "graph", scene, view_graph(scene))
-    model = model_of(Case(graph, 0, 36, SETTINGS, 0))
+    model = model_of(Case(graph, 0, N, SETTINGS, 0))
     cache = open_cache(graph / "database.db")
     done = {on: adjust(model, cache, OPTIONS, refine_principal_point=False, trim_tracks=on) for on in (False, True)}
     return request.param, scene, model, cache, done
@@ -110,9 +111,9 @@ def test_the_choice_of_tracks_repeats_to_the_last_bit(case: Adjusted, tmp_path: 
 
 
 def test_a_principal_point_that_is_off_is_found_through_the_kept_tracks(tmp_path: Path) -> None:
-    scene = make_scene(36, 2400)
+    scene = make_scene(N, 1200)
     graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
-    start = model_of(Case(graph, 0, 36, SETTINGS, 0))
+    start = model_of(Case(graph, 0, N, SETTINGS, 0))
     params = np.array(start.camera(1).params)
     params[2:4] += (14.0, -9.0)
     start.camera(1).params = list(params)

@@ -14,9 +14,11 @@ import pytest
 
 from core.errors import Cancelled, StageFailed
 from core.features.io import FrameFeatures, read_features, write_features
+from core.io.frames import read_crop, read_frames, write_frames
 from core.matching.auto import GIVE_UP_AFTER
 from core.matching.keyframes import Keyframes, read_keyframes, write_keyframes
 from core.matching.lightglue import LightGlueMatcher
+from core.scene.frame import RunFrames
 from core.settings import make_settings
 from core.stage import StageTask
 from core.stages import features, graph, matches, motion
@@ -141,6 +143,18 @@ def test_motion_chooses_among_the_search_frames(run: Path, tmp_path: Path) -> No
     facts = motion.run(replace(task, facts={"frames": {"n_search": 5, "crop": [0, 0, *SIZE]}})).facts
     assert read_keyframes(tmp_path).frames == (0, 1, 2, 3, 4)
     assert facts == {"n_keyframes": 5, "median_step": 1.0, "motion_per_frame": pytest.approx(6 / SIZE[0], rel=0.05)}
+
+
+def test_nothing_moves_over_a_cut_between_two_videos(run: Path, tmp_path: Path) -> None:
+    inputs = _inputs(run)
+    cut = tmp_path / "frames"
+    shutil.copytree(inputs["frames"], cut)
+    frames = read_frames(cut)
+    write_frames(cut, RunFrames(tuple(replace(one, video=int(one.index >= 3)) for one in frames)), read_crop(cut))
+    task = _task("motion", tmp_path / "out", {**inputs, "frames": cut})
+    motion.run(replace(task, facts={"frames": {"n_search": 5, "crop": [0, 0, *SIZE]}}))
+    moved = read_keyframes(tmp_path / "out").moved
+    assert [one is None for one in moved] == [False, False, True, False]
 
 
 def test_keyframes_that_lie_apart_are_matched_too(run: Path, tmp_path: Path) -> None:

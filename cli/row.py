@@ -1,0 +1,71 @@
+"""`bladeatlas row`: the row of blades of a finished result, computed from its files and written into them."""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from cli.terminal import say, say_json
+from core.errors import BadInput
+from core.json_files import read_json
+
+LEAST_COUNT, MOST_COUNT = 7, 180
+NOT_SEEN = 0.5
+"""A blade less than this share of whose surface two views see at a usable angle was not seen well."""
+
+
+def command(parsed: argparse.Namespace) -> int:
+    """Write row.json and the column `blade` of a result, and say what was found."""
+    # Loaded here: the row needs the ray caster, `--help` does not.
+    from core.row.published import ROW, write_row
+
+    folder: Path = parsed.result
+    write_row(folder, told_count(parsed.set))
+    document = read_json(folder / ROW)
+    if parsed.json:
+        say_json(document, indent=1)
+    elif document["status"] == "unknown":
+        say(f"row: unknown: {document['reason_text']}")
+    else:
+        low, high = document["count"]
+        blades = str(low) if low == high else f"{low} to {high}"
+        say(f"row: pitch {document['pitch_deg']:.3f} +- {document['pitch_sigma_deg']:.3f} degrees, {blades} blades")
+        say(closing_line(document))
+    return 0
+
+
+def told_count(pairs: Sequence[str]) -> int | None:
+    """The number of blades of `--set count=N`; None when it is not told.
+
+    Raises:
+        BadInput: another name, or no possible number.
+    """
+    count = None
+    for pair in pairs:
+        name, _, value = pair.partition("=")
+        if name != "count":
+            raise BadInput(f"'{name}' is nothing that a row can be told; it can be told: count", where="--set")
+        if not value.isdecimal() or not LEAST_COUNT <= int(value) <= MOST_COUNT:
+            raise BadInput(f"'{value}' is no number of blades from {LEAST_COUNT} to {MOST_COUNT}", where="--set count")
+        count = int(value)
+    return count
+
+
+def closing_line(document: dict[str, object]) -> str:
+    """Blades seen, findings on each, and what was not seen, in one line."""
+    coverage, findings = document["coverage"], document["findings"]
+    assert isinstance(coverage, list)  # both as `core.row.published` writes them
+    assert isinstance(findings, list)
+    on = Counter(one["blade"] for one in findings)
+    numbers = [int(one["blade"]) for one in coverage]
+    each = ", ".join(f"blade {number}: {on[number]}" for number in numbers)
+    weak = [f"{one['blade']} ({100 * one['views_2']:.0f} %)" for one in coverage if one["views_2"] < NOT_SEEN]
+    text = f"{len(numbers)} blades seen; findings on {each}"
+    text += f"; on no blade: {on[None]}" if on[None] else ""
+    mean = float(np.mean([one["views_2"] for one in coverage]))
+    text += f"; two views see {100 * mean:.0f} % of their reconstructed surface"
+    return text + (f", less than half of blade {', '.join(weak)}" if weak else "")

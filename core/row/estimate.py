@@ -1,0 +1,160 @@
+"""The row of a surface, or the reason why none is known."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.mapping.surface import Surface
+from core.row.blades import Sheet, fit_sheet, radial, seen_blades
+from core.row.coverage import coverage_of, in_order, sightings
+from core.row.fit import best_contrast, refined
+from core.row.model import BladeRow, NoRow, RowStatus, UnknownRow
+from core.row.overlap import Hypothesis, contrast, overlap
+from core.row.sample import SurfaceSample, sample_surface, thinned
+from core.row.seeds import seeds
+from core.scene.views import Views
+from core.surface.ply import Mesh
+
+F64 = NDArray[np.float64]
+
+SEARCH_POINTS = 1500
+FIT_POINTS = 10_000
+MIN_CONTRAST = 0.15
+"""True surfaces of one blade and of a hub have 0.00; a noisy draft surface seen from one side has 0.20."""
+WORTH_FITTING = MIN_CONTRAST / 4
+"""Contrast on the coarse points, which show less of it, that a hypothesis needs to be fitted to more of them."""
+MIN_SHARE_KEPT = 0.5
+"""Contrast over the mean overlap after one and two pitches: half of the overlap must vanish between blades."""
+MIN_SECOND = 0.05
+"""Least overlap after two pitches: with less there are two blades at most."""
+SECOND_TO_TROUGH = 3.0
+"""Overlap after two pitches, over that of the lower trough beside it."""
+MIN_SIGMA_SHARE = 0.03
+"""Of the pitch: radius and pitch trade, so what the blades agree on among themselves says too little.
+
+On a draft surface of the sample, whose true pitch is 5.625 degrees, two draws of the points gave 5.83 and 5.95."""
+MAX_PITCH_SPREAD = 0.08
+"""Of the pitch: farther from the common pitch no two neighbours may lie."""
+LEAST_BLADES = 3
+LEAST_VIEWS = 3
+REPORTED_TURNS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
+ENDS_PERCENT = (0.5, 99.5)
+"""Of the radii on blades: root and tip."""
+
+
+def estimate_row(mesh: Mesh, views: Views, seed: int, count: int | None = None) -> BladeRow | NoRow:
+    """The row of equal blades that a mesh shows.
+
+    Args:
+        mesh: oriented towards the cameras (`core.mapping.scene.oriented`).
+        views: the model's, in order of time.
+        seed: of the points drawn.
+        count: number of blades in the whole row, when the user tells it; the pitch is exact then.
+    """
+    drawn = sample_surface(mesh, seed)
+    if not len(drawn):
+        return NoRow(UnknownRow.NO_SURFACE)
+    if len(views) < LEAST_VIEWS:
+        return NoRow(UnknownRow.TOO_FEW_VIEWS)
+    coarse, fine = thinned(drawn, SEARCH_POINTS), thinned(drawn, FIT_POINTS)
+    found = find_row(coarse, fine, views.R, views.t)
+    if found is None:
+        return NoRow(UnknownRow.NO_REPETITION)
+    found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
+    if count is not None:
+        found = Hypothesis(found.axis, 2 * np.pi / count)
+    refusal = refused(fine, found)
+    if refusal is not None:
+        return refusal
+    return _described(fine, coarse, found, views, Surface(mesh.vertices, mesh.faces), count)
+
+
+def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, translations: F64) -> Hypothesis | None:
+    """The row of best contrast on the fine sample; None where no motion between views looks like a turn."""
+    found = []
+    for first in seeds(coarse, rotations, translations):
+        value, row = best_contrast(coarse, first)
+        if value < WORTH_FITTING:
+            continue
+        row = refined(fine, row)
+        found.append((contrast(fine, row), row))
+    return max(found, key=lambda item: item[0])[1] if found else None
+
+
+def refused(fine: SurfaceSample, row: Hypothesis) -> NoRow | None:
+    """Why a hypothesis is no row; None for one."""
+    value = contrast(fine, row)
+    one, trough, second, after = overlap(
+        fine, row.axis, [k * row.pitch_rad for k in (1.0, 1.5, 2.0, 2.5)], row.kernel(fine)
+    )
+    if value < max(MIN_CONTRAST, MIN_SHARE_KEPT * float(one + second) / 2):
+        return NoRow(UnknownRow.NO_REPETITION, value)
+    if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):
+        return NoRow(UnknownRow.TOO_FEW_BLADES, value)
+    sheet = fit_sheet(fine, row)
+    blades = seen_blades(sheet, fine)
+    if len(blades) < LEAST_BLADES:
+        return NoRow(UnknownRow.TOO_FEW_BLADES, value)
+    spread = np.abs(_deviations(sheet, fine, blades))
+    if spread.max() > MAX_PITCH_SPREAD:
+        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value)
+    return None
+
+
+def _deviations(sheet: Sheet, sample: SurfaceSample, blades: NDArray[np.int64]) -> F64:
+    """(k - 1,) by how much the step from each blade to the next seen differs from the pitch, in pitches.
+
+    Compared are the places that both show, or a blade of which another part is seen would seem to have moved.
+    """
+    on_blade = sample.of(~radial(sheet.axis, sample.points, sample.normals))
+    position = sheet.position(on_blade.points)
+    index = np.round(position).astype(np.int64)
+    steps = []
+    for one, other in pairwise(blades):
+        angle = float(other - one) * sheet.pitch_rad
+        here, there = on_blade.of(index == one), on_blade.of(index == other)
+        moved = sheet.axis.turned(here.points, angle)
+        found = there.tree.query(moved)
+        rows, near = np.asarray(found[1]), np.asarray(found[0]) < 4.0 * sample.spacing
+        if near.sum() < 10:
+            continue
+        gap = moved[near] - there.points[rows[near]]
+        across = (gap * there.normals[rows[near]]).sum(axis=1)
+        lever = (sheet.axis.tangential(moved[near]) * there.normals[rows[near]]).sum(axis=1)
+        _, radius, _ = sheet.axis.cylinder(moved[near])
+        arm = lever * radius
+        steps.append(-float((arm * across).sum() / max(float((arm**2).sum()), 1e-300)) / sheet.pitch_rad)
+    return np.array(steps or [0.0])
+
+
+def _described(
+    fine: SurfaceSample, coarse: SurfaceSample, row: Hypothesis, views: Views, surface: Surface, count: int | None
+) -> BladeRow:
+    sheet = fit_sheet(fine, row)
+    blades = seen_blades(sheet, fine)
+    on_blade = coarse.of(~radial(row.axis, coarse.points, coarse.normals))
+    seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
+    numbers = in_order(seen, index, blades)
+    spread = _deviations(sheet, fine, blades)
+    sigma = row.pitch_rad * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
+    _, radius, _ = row.axis.cylinder(fine.points[~radial(row.axis, fine.points, fine.normals)])
+    root, tip = np.percentile(radius, ENDS_PERCENT)
+    shares = overlap(fine, row.axis, [k * row.pitch_rad for k in REPORTED_TURNS], row.kernel(fine))
+    fewest = int(np.ceil(2 * np.pi / (row.pitch_rad + 2 * sigma) - 1e-6))
+    most = int(np.floor(2 * np.pi / (row.pitch_rad - 2 * sigma) + 1e-6))
+    return BladeRow(
+        RowStatus.ESTIMATED if count is None else RowStatus.USER,
+        sheet,
+        sigma,
+        (fewest, most),
+        contrast(fine, row),
+        {f"{turn:g}": round(float(share), 4) for turn, share in zip(REPORTED_TURNS, shares, strict=True)},
+        float(root),
+        float(tip),
+        fine.spacing,
+        numbers,
+        coverage_of(seen, index, numbers),
+    )

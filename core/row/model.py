@@ -1,0 +1,168 @@
+"""What is said about a row of blades, and why something is not said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.json_files import JsonObject
+from core.row.blades import Sheet
+from core.row.turn import Axis
+
+F64 = NDArray[np.float64]
+
+SCHEMA_VERSION = 1
+
+
+class RowStatus(StrEnum):
+    """Where the row comes from."""
+
+    ESTIMATED = "estimated"
+    """From the surface alone."""
+    USER = "user"
+    """From the surface, with the number of blades told."""
+    UNKNOWN = "unknown"
+
+
+class UnknownRow(StrEnum):
+    """Why no row is known."""
+
+    NO_SURFACE = "no_surface"
+    TOO_FEW_VIEWS = "too_few_views"
+    NO_REPETITION = "no_repetition"
+    TOO_FEW_BLADES = "too_few_blades"
+    PITCH_NOT_CONSTANT = "pitch_not_constant"
+
+
+UNKNOWN_ROW: Mapping[UnknownRow, str] = {
+    UnknownRow.NO_SURFACE: "there is no supported surface",
+    UnknownRow.TOO_FEW_VIEWS: "fewer than three images are registered",
+    UnknownRow.NO_REPETITION: "no turn lays the surface onto itself: one blade, a hub, or no row",
+    UnknownRow.TOO_FEW_BLADES: "the surface shows fewer than three equal blades",
+    UnknownRow.PITCH_NOT_CONSTANT: "the angle from blade to blade is not constant: no row, or a wrong model",
+}
+"""What each reason means, for people."""
+
+
+class Side(StrEnum):
+    """Which part of a blade a place lies on."""
+
+    CONCAVE = "concave"
+    CONVEX = "convex"
+    TIP = "tip"
+    PLATFORM = "platform"
+    OTHER = "other"
+    """The surface of a row, but of none of its blades."""
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """How well one blade was looked at."""
+
+    blade: int
+    """Its number."""
+    views: int
+    """Registered images that see some of it at a usable angle."""
+    share: float
+    """Of all the surface of the row that any blade shows, the part seen on this one, in [0, 1]."""
+    by_views: Mapping[int, float]
+    """Share of its own surface that at least so many images see at a usable angle."""
+
+
+@dataclass(frozen=True)
+class BladeRow:
+    """A row of equal blades, in the world frame and unit of its model."""
+
+    status: RowStatus
+    sheet: Sheet
+    """The angle of the blades as a function of place."""
+    pitch_sigma_rad: float
+    count: tuple[int, int]
+    """Fewest and most blades in the whole row."""
+    contrast: float
+    overlaps: Mapping[str, float]
+    """Share of the surface that lies on itself after so many pitches."""
+    root_radius: float
+    tip_radius: float
+    radius_sigma: float
+    """Of both radii."""
+    numbers: Mapping[int, int]
+    """Of the blades seen by their index on the sheet: from 1 in order of first appearance."""
+    coverage: tuple[Coverage, ...] = ()
+
+    @property
+    def axis(self) -> Axis:
+        """The axis of the row."""
+        return self.sheet.axis
+
+    @property
+    def pitch_rad(self) -> float:
+        """Angle from blade to blade."""
+        return self.sheet.pitch_rad
+
+    @property
+    def phases(self) -> F64:
+        """(n,) angles of the blades seen where the sheet's lean is zero, rad, in the order of their numbers."""
+        ordered = sorted(self.numbers, key=lambda index: self.numbers[index])
+        return np.array([self.sheet.start_rad + index * self.pitch_rad for index in ordered])
+
+    def to_dict(self) -> JsonObject:
+        """JSON form."""
+        return {
+            "schema_version": SCHEMA_VERSION,
+            "status": str(self.status),
+            "reason": None,
+            "axis": _numbers(self.axis.direction),
+            "point": _numbers(self.axis.foot),
+            "pitch_deg": round(float(np.degrees(self.pitch_rad)), 5),
+            "pitch_sigma_deg": round(float(np.degrees(self.pitch_sigma_rad)), 5),
+            "count": list(self.count),
+            "root_radius": round(self.root_radius, 6),
+            "tip_radius": round(self.tip_radius, 6),
+            "radius_sigma": round(self.radius_sigma, 6),
+            "edges": {"a": "unknown", "b": "unknown"},
+            "zero_blade": None,
+            "direction": None,
+            "blades": [
+                {"number": number, "angle_deg": round(float(np.degrees(phase)), 4)}
+                for number, phase in zip(sorted(self.numbers.values()), self.phases, strict=True)
+            ],
+            "coverage": [
+                {
+                    "blade": one.blade,
+                    "views": one.views,
+                    "share": round(one.share, 4),
+                    **{f"views_{least}": round(part, 4) for least, part in one.by_views.items()},
+                }
+                for one in self.coverage
+            ],
+            "evidence": {"contrast": round(self.contrast, 4), "overlaps": dict(self.overlaps)},
+        }
+
+
+@dataclass(frozen=True)
+class NoRow:
+    """No row is known."""
+
+    reason: UnknownRow
+    contrast: float | None = None
+    """The best that was found, where it was asked for."""
+
+    def to_dict(self) -> JsonObject:
+        """JSON form."""
+        return {
+            "schema_version": SCHEMA_VERSION,
+            "status": str(RowStatus.UNKNOWN),
+            "reason": str(self.reason),
+            "reason_text": UNKNOWN_ROW[self.reason],
+            "evidence": {"contrast": None if self.contrast is None else round(self.contrast, 4)},
+        }
+
+
+def _numbers(values: F64) -> list[float]:
+    return [round(float(value), 9) for value in values]

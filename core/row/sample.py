@@ -1,0 +1,109 @@
+"""Points that stand for a surface: uniform over its area, thinned to a number, with normals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.surface.ply import Mesh
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+MIN_SUPPORT = 0.7
+"""Of a face's corners: below it the surface is a guess between the points of the cloud."""
+DRAWN = 60_000
+NEIGHBOUR = 4
+"""The spacing is the median distance to this neighbour."""
+THINNING_STEPS = 24
+"""Bisections of the size of a cell."""
+
+
+@dataclass(frozen=True)
+class SurfaceSample:
+    """Points of a surface."""
+
+    points: F64
+    """(n, 3) scene units."""
+    normals: F64
+    """(n, 3) unit, towards the cameras."""
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """For the nearest of the points."""
+        return cKDTree(self.points)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Median distance of a point to its fourth neighbour, scene units; 0 for five points or fewer."""
+        if len(self.points) <= NEIGHBOUR + 1:
+            return 0.0
+        away = np.asarray(self.tree.query(self.points, k=NEIGHBOUR + 1)[0])
+        return float(np.median(away[:, NEIGHBOUR]))
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def of(self, chosen: NDArray[np.bool_] | I64) -> SurfaceSample:
+        """Those of the points that a mask or rows name."""
+        return SurfaceSample(self.points[chosen], self.normals[chosen])
+
+
+def sample_surface(mesh: Mesh, seed: int, drawn: int = DRAWN) -> SurfaceSample:
+    """Points drawn uniformly over the area of the supported faces of a mesh; none where it has none.
+
+    Args:
+        mesh: faces counter-clockwise seen from the cameras; without a property `support` all of it counts.
+        seed: of the draw.
+        drawn: number of points.
+    """
+    faces = supported_faces(mesh)
+    corners = mesh.vertices[faces]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    doubled = np.linalg.norm(cross, axis=1)
+    if not len(faces) or doubled.sum() <= 0.0:
+        return SurfaceSample(np.zeros((0, 3)), np.zeros((0, 3)))
+    rng = np.random.default_rng(seed)
+    chosen = rng.choice(len(faces), size=drawn, p=doubled / doubled.sum())
+    u, v = rng.random((2, drawn, 1))
+    over = u + v > 1.0
+    u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
+    a, b, c = (corners[chosen, k] for k in range(3))
+    return SurfaceSample(a + u * (b - a) + v * (c - a), cross[chosen] / doubled[chosen, None])
+
+
+def supported_faces(mesh: Mesh) -> NDArray[np.int32]:
+    """(m, 3) faces whose three corners all have enough support."""
+    support = mesh.extra.get("support")
+    if support is None:
+        return mesh.faces
+    kept: NDArray[np.int32] = mesh.faces[(support[mesh.faces] >= MIN_SUPPORT).all(axis=1)]
+    return kept
+
+
+def thinned(sample: SurfaceSample, target: int) -> SurfaceSample:
+    """About `target` of the points, evenly spread: one per cell of a grid and octant of the normal.
+
+    The octant keeps the two sides of a thin blade, which share cells, apart.
+    """
+    if len(sample) <= target:
+        return sample
+    origin = sample.points.min(axis=0)
+    octant = (sample.normals > 0) @ np.array((1, 2, 4))
+    low, high = 0.0, float((sample.points.max(axis=0) - origin).max())
+    rows = np.arange(len(sample))
+    for _ in range(THINNING_STEPS):
+        size = (low + high) / 2
+        cells = np.floor((sample.points - origin) / size).astype(np.int64)
+        _, rows = np.unique(np.column_stack([cells, octant]), axis=0, return_index=True)
+        if len(rows) > target:
+            low = size
+        else:
+            high = size
+        if abs(len(rows) - target) <= 0.02 * target:
+            break
+    return sample.of(np.sort(rows))

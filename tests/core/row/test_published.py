@@ -1,0 +1,95 @@
+"""`bladeatlas row` on a published folder: row.json, the column `blade`, and nothing else changed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import cv2  # noqa: F401  (before pycolmap)
+import numpy as np
+import pycolmap
+import pytest
+
+from bench.scenes.blades import surface_point
+from cli.main import main
+from cli.row import told_count
+from core.errors import BadInput
+from core.io.timeline import read_defects
+from core.report.csv_form import read_csv
+from core.report.tables import write_csv
+from core.row.model import NoRow, UnknownRow
+from core.row.published import write_row
+from core.scene.detection import DETECTION_COLUMNS
+from core.surface.ply import write_mesh
+from tests.core.making_blades import SCENE, blades, walk
+from tests.core.making_rows import defect, mapped, unplaced
+
+TRUE_BLADES = (0, 1, 2, 2)
+SPANS = (0.3, 0.5, 0.7, 0.5)
+
+
+def published(folder: Path) -> Path:
+    """A result with a surface of three blades and a finding on each, the last two on one."""
+    for name in ("dense", "mapping", "sparse"):
+        (folder / name).mkdir(parents=True)
+    write_mesh(folder / "dense" / "mesh_poisson.ply", blades(3))
+    views = walk(5)
+    model = pycolmap.Reconstruction()
+    camera = views.camera
+    camera.camera_id = 1
+    model.add_camera_with_trivial_rig(camera)
+    for k in range(len(views)):
+        image = pycolmap.Image(name=f"{k}.png", camera_id=1, image_id=k + 1)
+        pose = pycolmap.Rigid3d(np.hstack([views.R[k], views.t[k][:, None]]))
+        model.add_image_with_trivial_frame(image, pose)
+    model.write_binary(folder / "sparse")
+    places = [surface_point(SCENE, b, s, 0.3, 1) for b, s in zip(TRUE_BLADES, SPANS, strict=True)]
+    rows = [mapped(k, (float(p[0]), float(p[1]), float(p[2]))).to_dict() for k, p in enumerate(places)]
+    rows.append(unplaced(4).to_dict())
+    records = [replace(defect(k), centroid=(float(p[0]), float(p[1]), float(p[2]))) for k, p in enumerate(places)]
+    (folder / "mapping" / "detections.json").write_text(json.dumps(rows))
+    write_csv(folder / "mapping" / "detections.csv", DETECTION_COLUMNS, rows)
+    (folder / "mapping" / "defects.json").write_text(json.dumps([record.to_dict() for record in records]))
+    (folder / "summary.json").write_text("{}")
+    return folder
+
+
+def test_row_of_a_published_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = published(tmp_path / "result")
+    before = json.loads((folder / "mapping" / "detections.json").read_text())
+    assert main(["row", str(folder), "--set", "count=64"]) == 0
+    row = json.loads((folder / "row.json").read_text())
+    assert (row["status"], row["count"], row["pitch_deg"]) == ("user", [64, 64], 5.625)
+    spans = [one["span"] for one in row["findings"]]
+    assert spans == pytest.approx(SPANS, abs=0.05)
+    after = json.loads((folder / "mapping" / "detections.json").read_text())
+    told = [one.pop("blade") for one in after]
+    assert told[4] is None
+    numbers = [int(one) for one in told[:4]]
+    assert numbers in ([1, 2, 3, 3], [3, 2, 1, 1])
+    assert [record.blade for record in read_defects(folder / "mapping")] == told[:4]
+    assert [one["blade"] for one in read_csv(folder / "mapping" / "detections.csv")] == [*told[:4], ""]
+    assert after == [{name: value for name, value in one.items() if name != "blade"} for one in before]
+    assert not list(folder.rglob("*.new"))
+    assert "3 blades seen; findings on blade 1:" in capsys.readouterr().out
+
+
+def test_a_result_without_a_surface_has_no_row(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "summary.json").write_text("{}")
+    found = write_row(tmp_path)
+    assert found == NoRow(UnknownRow.NO_SURFACE)
+    assert json.loads((tmp_path / "row.json").read_text())["reason"] == "no_surface"
+    assert main(["row", str(tmp_path)]) == 0
+    assert "unknown: there is no supported surface" in capsys.readouterr().out
+
+
+def test_a_folder_that_is_no_result_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="is no result"):
+        write_row(tmp_path)
+
+
+@pytest.mark.parametrize("pair", ["count=three", "count=6", "count=181", "blades=64", "count"])
+def test_what_a_row_cannot_be_told(pair: str) -> None:
+    with pytest.raises(BadInput):
+        told_count([pair])

@@ -1,0 +1,141 @@
+/** What is known of the selected finding or detection, and the human's word on it. */
+
+import type { ComponentChildren, JSX } from "preact";
+import { useLayoutEffect, useRef } from "preact/hooks";
+import type { Detection, Finding } from "../model/data";
+import { REASONS, reviewOf } from "../model/review";
+import { bladeText, certainty, confidenceReasons, measured, percent, reasonText, seconds } from "../model/words";
+import { data, frames, surface, visitsOfFinding } from "../session";
+import { act, asking, counts, exportReview, kept, records, undo } from "../review";
+import { blade, detection, finding, go, place, playVisit, selectFrame } from "../state";
+import { LabelMark } from "./marks";
+
+export function Detail(): JSX.Element {
+  const [one, own] = [finding.value, detection.value];
+  return (
+    <section class="panel detail" aria-label="Selection">
+      {one ? <OfFinding one={one} /> : own ? <OfDetection own={own} /> : <p class="note">Nothing is selected. Choose a finding, click the surface, or click a box of the frame.</p>}
+      {data.defects.length > 0 && <Exports />}
+    </section>
+  );
+}
+
+function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
+  const review = reviewOf(records.value, one.id);
+  const unit = one.length_unit ?? one.size_unit ?? data.model.unit;
+  const visits = visitsOfFinding.get(one.id) ?? [];
+  return (
+    <>
+      <h2><LabelMark label={one.label} /> D{one.id} <bdi>{one.label}</bdi>{review.label && <span class="human"> → <bdi>{review.label}</bdi></span>}</h2>
+      <ReviewBar one={one} />
+      <dl>
+        <Fact name="Size">{measured(one.size, one.size_sigma, unit)} <Unscaled unit={unit} /></Fact>
+        {one.length !== undefined && <Fact name="Length × width">{measured(one.length, one.length_sigma, unit)} × {measured(one.width, one.width_sigma, unit)}</Fact>}
+        {one.area !== undefined && one.area !== null && <Fact name="Area">{measured(one.area, one.area_sigma, unit === "model" ? "model" : `${unit}²`)}</Fact>}
+        {one.depth !== undefined && one.depth !== null && <Fact name="Depth">{measured(one.depth, one.depth_sigma, unit)}</Fact>}
+        <Fact name="Blade">
+          {bladeText(one.blade)}{one.side ? `, ${one.side.replaceAll("_", " ")}` : ""}
+          {Number(one.blade) > 0 && surface?.mesh.blade.some((each) => each === Number(one.blade)) && (
+            <button type="button" class="link" onClick={() => go({ b: blade.value === null ? Number(one.blade) : null }, true)}>{blade.value === null ? "show it alone" : "show all"}</button>
+          )}
+        </Fact>
+        {one.span !== undefined && <Fact name="Span, chord">{share(one.span, one.span_sigma)}, {share(one.chord, one.chord_sigma)}</Fact>}
+        {one.root_distance !== undefined && one.root_distance !== null && <Fact name="From the root">{measured(one.root_distance, one.root_distance_sigma, unit)}</Fact>}
+        <Fact name="Persistence">detected in {one.persistence.k} of the {one.persistence.n} frames that could show it</Fact>
+        <Fact name="Place">{one.centroid.map((value) => value.toFixed(3)).join(", ")}{one.centroid_sigma ? ` ± ${one.centroid_sigma.toPrecision(2)}` : ""}</Fact>
+      </dl>
+      <h3>Visits</h3>
+      <ul class="chips">
+        {visits.map((visit) => (
+          <li key={visit.event_id}><button type="button" onClick={() => playVisit(visit.start_s, visit.end_s, visit.video ?? 0)} aria-label={`Play the visit from ${seconds(visit.start_s)} to ${seconds(visit.end_s)}`}>▶ {data.videos.length > 1 ? `video ${visit.video ?? 0}, ` : ""}{seconds(visit.start_s)} to {seconds(visit.end_s)} · {visit.n_detections}</button></li>
+        ))}
+      </ul>
+      <h3>Best frames</h3>
+      <ul class="chips">
+        {one.best_frames.map((index, k) => (
+          <li key={index}><button type="button" aria-current={place.value.f === index} onClick={() => selectFrame(index)}>{k === 0 ? "best: " : ""}frame {frames.get(index)?.source_index ?? index}</button></li>
+        ))}
+      </ul>
+      <h3>Confidence {one.confidence ? `${percent(one.confidence.value)}, ${certainty(one.confidence.value)}` : "unknown"}</h3>
+      <ul class="reasons">{confidenceReasons(one).map((text) => <li key={text}>{text}</li>)}</ul>
+      {review.notes.length > 0 && <><h3>Notes</h3><ul class="reasons">{review.notes.map((text, k) => <li key={k}><bdi>{text}</bdi></li>)}</ul></>}
+    </>
+  );
+}
+
+function OfDetection({ own }: { readonly own: Detection }): JSX.Element {
+  return (
+    <>
+      <h2><LabelMark label={own.label} /> Detection {own.id} <bdi>{own.label}</bdi></h2>
+      <dl>
+        <Fact name="State">{own.state}</Fact>
+        {own.reason && <Fact name="Why">{reasonText(data, own.reason)}</Fact>}
+        {own.score !== null && own.score !== undefined && <Fact name="Detector's score">{own.score.toFixed(2)}</Fact>}
+        {own.confidence !== null && <Fact name="Confidence">{percent(own.confidence)}</Fact>}
+        {own.frame === null && <Fact name="Frame">no frame of the run shows it</Fact>}
+      </dl>
+    </>
+  );
+}
+
+function Fact({ name, children }: { readonly name: string; readonly children: ComponentChildren }): JSX.Element {
+  return <div><dt>{name}</dt><dd>{children}</dd></div>;
+}
+
+function Unscaled({ unit }: { readonly unit: string }): JSX.Element | null {
+  return unit === "model" ? <small>model units, unscaled</small> : null;
+}
+
+function share(value: number | null | undefined, sigma: number | null | undefined): string {
+  return value === null || value === undefined ? "unknown" : `${percent(value)}${sigma ? ` ± ${Math.max(1, Math.round(100 * sigma))}` : ""}`;
+}
+
+function ReviewBar({ one }: { readonly one: Finding }): JSX.Element {
+  const state = reviewOf(records.value, one.id);
+  return (
+    <div class="review-bar" role="group" aria-label="Review">
+      <button type="button" aria-pressed={state.state === "accepted"} onClick={() => act("accept")} title="Accept (A)">Accept</button>
+      <button type="button" aria-pressed={state.state === "rejected"} onClick={() => (asking.value = "reject")} title="Reject (R)">Reject{state.state === "rejected" && state.reason ? `: ${state.reason}` : ""}</button>
+      <button type="button" onClick={() => (asking.value = "relabel")} title="Label (L)">Label</button>
+      <button type="button" onClick={() => (asking.value = "note")} title="Note (N)">Note</button>
+      <button type="button" disabled={!records.value.length} onClick={undo} title="Take back (Z)">Undo</button>
+      {asking.value && <Ask what={asking.value} label={one.label} />}
+    </div>
+  );
+}
+
+/** Asks for the word that an action needs; Enter keeps it, Escape leaves. */
+function Ask({ what, label }: { readonly what: "reject" | "relabel" | "note"; readonly label: string }): JSX.Element {
+  const field = useRef<HTMLInputElement & HTMLSelectElement>(null);
+  useLayoutEffect(() => field.current?.focus(), [what]); // before the next key is pressed
+  const done = (event: Event): void => {
+    event.preventDefault();
+    const value = field.current?.value.trim() ?? "";
+    if (what === "reject") act("reject", null, value);
+    else if (value) act(what, value);
+    asking.value = null;
+  };
+  const name = what === "reject" ? "Why is it rejected?" : what === "relabel" ? "The right label" : "Note";
+  return (
+    <form class="ask" onSubmit={done} onKeyDown={(event) => { if (event.key === "Escape") { event.stopPropagation(); asking.value = null; } else if (event.key === "Enter" && event.target === field.current) done(event); }}>
+      <label>{name}
+        {what === "reject"
+          ? <select ref={field}>{REASONS.map((reason) => <option key={reason}>{reason}</option>)}</select>
+          : <input ref={field} type="text" maxLength={what === "note" ? 2000 : 100} defaultValue={what === "relabel" ? label : ""} list={what === "relabel" ? "known-labels" : undefined as unknown as string} />}
+      </label>
+      {what === "relabel" && <datalist id="known-labels">{[...new Set(data.detections.map((own) => own.label))].map((own) => <option key={own} value={own} />)}</datalist>}
+      <button type="submit">Keep</button>
+      <button type="button" onClick={() => (asking.value = null)}>Leave</button>
+    </form>
+  );
+}
+
+function Exports(): JSX.Element {
+  return (
+    <p class="exports">
+      <span>Reviewed {counts.value.done} of {counts.value.all}.</span>
+      <button type="button" disabled={!records.value.length} onClick={exportReview}>Save review.json</button>
+      {!kept.value && <span class="warn">This browser keeps nothing for this page: save before you close it.</span>}
+    </p>
+  );
+}

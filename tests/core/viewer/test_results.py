@@ -31,8 +31,9 @@ def document_of(page: Path) -> dict[str, Any]:
 
 
 def size_of(picture: Path) -> tuple[int, int]:
-    height, width = cv2.imread(str(picture)).shape[:2]
-    return width, height
+    read = cv2.imread(str(picture))
+    assert read is not None
+    return read.shape[1], read.shape[0]
 
 
 @pytest.mark.parametrize("name", PAGES)

@@ -139,9 +139,10 @@ def test_the_glb_gives_back_the_mesh(tmp_path: Path) -> None:
     distance, nearest = cKDTree(mesh.vertices).query(places)
     assert distance.max() < 6 / 65535
     colors = np.vstack([glb.values(glb.primitive(name)["attributes"]["COLOR_0"]) for name in children])
-    level = mesh.colors[nearest] / 255 if mesh.colors is not None else np.zeros(0)
+    assert mesh.colors is not None
+    level: NDArray[np.float64] = mesh.colors[nearest] / 255
     linear = np.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4)
-    assert np.abs(colors[:, :3] / 65535 - linear).max() < 1e-4
+    assert colors[:, :3] / 65535 == pytest.approx(np.asarray(linear), abs=1e-4)
     support = np.vstack([glb.values(glb.primitive(name)["attributes"]["_SUPPORT"]) for name in children])
     assert np.abs(support[:, 0] / 255 - mesh.extra["support"][nearest]).max() < 0.003
     normals = np.vstack([glb.values(glb.primitive(name)["attributes"]["NORMAL"]) for name in children])

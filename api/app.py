@@ -30,6 +30,7 @@ from api.routes import (
     system,
     tables,
     uploads,
+    viewer,
 )
 from api.services import Services, services_from
 from api.state import State
@@ -45,7 +46,7 @@ from store.settings import deployment_settings
 from store.web_sessions import WebSessions
 
 _ROUTERS = (
-    *(health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, frames),
+    *(health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, viewer, frames),
     *(session, keys, accounts, audit, events),
 )
 

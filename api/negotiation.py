@@ -35,6 +35,15 @@ def matches(header: str | None, etag: str) -> bool:
     return header.strip() == "*" or etag in tags
 
 
+def accepts_gzip(header: str | None) -> bool:
+    """Whether an ``Accept-Encoding`` takes gzip; without the header nothing is assumed."""
+    for entry in (header or "").split(","):
+        name, *parameters = (part.strip().lower() for part in entry.split(";"))
+        if name in ("gzip", "x-gzip"):
+            return not any(part.startswith("q=") and not part[2:].strip("0.") for part in parameters)
+    return False
+
+
 @dataclass(frozen=True)
 class Span:
     """Bytes `start` to `stop` (exclusive) of a file."""

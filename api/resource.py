@@ -16,6 +16,7 @@ from api.watching import Snapshot
 from core.errors import BadInput, NoReconstruction, error_from_dict
 from core.fingerprint import digest_of
 from core.flags import Severity
+from core.outputs import VIEWER_PAGE
 from core.states import InspectionState
 from core.versions import all_versions
 from store.leasing import input_files, metadata_of
@@ -194,4 +195,5 @@ def _queue(status: InspectionStatus, plan: Interval | None) -> Queue | None:
 
 def _links(inspection_id: str) -> dict[str, str]:
     own = f"/v1/inspections/{inspection_id}"
-    return {"self": own, **{name.removesuffix(".zip"): f"{own}/{name}" for name in _LINKS}}
+    page = {"viewer": f"{own}/{VIEWER_PAGE}"}
+    return {"self": own, **page, **{name.removesuffix(".zip"): f"{own}/{name}" for name in _LINKS}}

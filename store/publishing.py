@@ -15,6 +15,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, delete, or_, select, update
 from sqlalchemy.orm import Session
 
+from core.outputs import VIEWER
 from store.account_models import Account
 from store.db import Database
 from store.events import tell_change
@@ -26,10 +27,12 @@ from store.tables import replace_rows
 
 _BY_SUFFIX = {
     ".bin": "application/octet-stream",
+    ".css": "text/css; charset=utf-8",
     ".csv": "text/csv; charset=utf-8",
     ".glb": "model/gltf-binary",
     ".html": "text/html; charset=utf-8",
     ".jpg": "image/jpeg",
+    ".js": "text/javascript; charset=utf-8",
     ".json": "application/json",
     ".pdf": "application/pdf",
     ".ply": "application/ply",
@@ -41,6 +44,27 @@ _BY_SUFFIX = {
 def media_type(path: str) -> str:
     """By the name's suffix; bytes without a known one are just bytes."""
     return _BY_SUFFIX.get(PurePosixPath(path).suffix.lower(), "application/octet-stream")
+
+
+_COMPRESSED = ".gz"
+_COMPRESSIBLE = (".css", ".glb", ".html", ".js", ".json")
+
+
+def is_of_page(path: str) -> bool:
+    """Whether a published file is of a page: below ``viewer/`` or ``models/N/viewer/``."""
+    parts = PurePosixPath(path).parts
+    below = parts[2:] if parts[:1] == ("models",) else parts
+    return below[:1] == (VIEWER,)
+
+
+def compressed_key(key: str) -> str | None:
+    """Where the store keeps the gzipped form of a file of a page; None for one that is kept as it is alone."""
+    return key + _COMPRESSED if key.endswith(_COMPRESSIBLE) else None
+
+
+def uncompressed_key(key: str) -> str:
+    """The file that a gzipped one is the form of; any other is its own."""
+    return key.removesuffix(_COMPRESSED)
 
 
 def artifact_prefix(inspection_id: str, attempt: int) -> str:

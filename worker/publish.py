@@ -8,6 +8,7 @@ under the same names.
 
 from __future__ import annotations
 
+import gzip
 import json
 import shutil
 import tempfile
@@ -35,13 +36,14 @@ from store.files import ArtifactStore, Stored
 from store.inspections import Inspections
 from store.json_log import logger
 from store.models import OVER_TASK
-from store.publishing import Publishing, Ticket
+from store.publishing import Publishing, Ticket, compressed_key, is_of_page, uncompressed_key
 from store.records import InspectionView, TaskView
 from store.tables import defect_rows
 from worker.periodic import Periodic
 from worker.results import MANIFEST, ResultFolders
 
 _LIST = "published.json"
+_GZIP_LEVEL = 6
 _log = logger("bladeatlas.publisher")
 
 
@@ -294,7 +296,19 @@ class Publisher:
             key = f"{ticket.prefix}/{path}"
             kept = self.store.link(key, source, known[source]) if source in known else self.store.put(key, source)
             stored.append(Stored(path, kept.size, kept.sha256))
+            if is_of_page(path):
+                self._store_compressed(key, source)
         return stored
+
+    def _store_compressed(self, key: str, source: Path) -> None:
+        """A gzipped copy beside a file of a page, made once: it is no artifact of its own."""
+        target = compressed_key(key)
+        if target is None:
+            return
+        with tempfile.TemporaryDirectory(prefix="gzip-", dir=self.scratch) as folder:
+            packed = Path(folder) / "file.gz"
+            packed.write_bytes(gzip.compress(source.read_bytes(), _GZIP_LEVEL, mtime=0))
+            self.store.put(target, packed)
 
     def _manifests(self, sources: Iterable[Path]) -> dict[Path, Stored]:
         """Size and hash of files of results, from their manifests."""
@@ -310,5 +324,5 @@ class Publisher:
         """Remove what earlier attempts, or a publisher that was cut off, put into the inspection's folder."""
         shown = {f"{ticket.prefix}/{file.path}" for file in stored}
         for key in self.store.list(f"inspections/{ticket.inspection_id}"):
-            if key not in shown:
+            if uncompressed_key(key) not in shown:
                 self.store.remove(key)

@@ -130,10 +130,10 @@ def _stream(
         return Response(status_code=status, headers=headers, media_type=view.media_type)
     if not store.exists(view.key):
         raise not_found("file")
-    return StreamingResponse(_bytes(store, view.key, part), status, headers, view.media_type)
+    return StreamingResponse(stream_bytes(store, view.key, part), status, headers, view.media_type)
 
 
-def _bytes(store: ArtifactStore, key: str, span: Span) -> Iterator[bytes]:
+def stream_bytes(store: ArtifactStore, key: str, span: Span) -> Iterator[bytes]:
     """A part of a stored file, a chunk in memory at a time."""
     left = span.stop - span.start
     with store.open(key) as stream:
@@ -174,7 +174,7 @@ def archive(
         raise not_ready(row, "file of that pattern" if include else "file")
     archived = ZipStream(sized=True)
     for view in views:
-        archived.add(_bytes(services.artifacts, view.key, Span(0, view.size)), view.path, size=view.size)
+        archived.add(stream_bytes(services.artifacts, view.key, Span(0, view.size)), view.path, size=view.size)
     headers = {
         "Content-Length": str(len(archived)),
         "Content-Disposition": f'attachment; filename="{inspection_id}.zip"',

@@ -81,9 +81,12 @@ def camera_of(views: Views, crop: Crop) -> JsonObject:
 
 
 def poses_of(views: Views) -> dict[int, list[float]]:
-    """cam_from_world of every registered frame by its index, row by row."""
+    """cam_from_world of every registered frame by its index, row by row, with nine digits."""
     matrices = np.concatenate([views.R, views.t[:, :, None]], axis=2).reshape(-1, 12)
-    return {int(index): matrix.tolist() for index, matrix in zip(views.frame_index, matrices, strict=True)}
+    return {
+        int(index): [float(f"{value:.9g}") for value in matrix]
+        for index, matrix in zip(views.frame_index, matrices, strict=True)
+    }
 
 
 def up_of(views: Views) -> list[float] | None:

@@ -7,27 +7,11 @@ import json
 from importlib import resources
 from pathlib import Path
 
-from core.json_files import write_json
 from core.viewer.document import ViewerSource, viewer_document
 
 DOCUMENT = "viewer.json"
 DATA = "data.js"
 _BUNDLE = "bundle"
-
-POLICY = "; ".join(
-    (
-        "default-src 'none'",
-        "script-src 'self'",
-        "style-src 'self' 'unsafe-inline'",
-        "img-src 'self' data: blob:",
-        "connect-src 'self'",
-        "worker-src blob:",
-        "base-uri 'none'",
-        "form-action 'none'",
-        "frame-ancestors 'none'",
-    )
-)
-"""Content security policy of the page wherever a server sends it: it runs its own scripts and asks nobody else."""
 
 
 def bundle() -> dict[str, bytes]:
@@ -49,11 +33,11 @@ def write_page(folder: Path, source: ViewerSource, surface: Path | None) -> list
     """
     folder.mkdir(parents=True, exist_ok=True)
     document = viewer_document(source)
-    write_json(folder / DOCUMENT, document)
+    text = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    (folder / DOCUMENT).write_text(text + "\n", encoding="ascii", newline="\n")
     shown = surface if document["surface"] is not None else None
     encoded = None if shown is None else base64.b64encode(shown.read_bytes()).decode("ascii")
-    # Compact; and no text of the annotations can end a script that it may be pasted into.
-    viewer = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    viewer = text.replace("<", "\\u003c")  # no text of the annotations can end a script that it may be pasted into
     mesh = "null" if encoded is None else f'"{encoded}"'
     script = f"window.BLADEATLAS = {{viewer: {viewer}, surface: {mesh}}};\n"
     (folder / DATA).write_text(script, encoding="ascii", newline="\n")

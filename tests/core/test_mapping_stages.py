@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -63,8 +64,8 @@ def write(path: Path, value: Any) -> None:
     path.write_text(json.dumps(value), encoding="utf-8")
 
 
-def plane() -> Mesh:
-    x, y = np.meshgrid(np.linspace(-3, 3, 121), np.linspace(-2.5, 2.5, 101))
+def plane(columns: int = 121, rows: int = 101) -> Mesh:
+    x, y = np.meshgrid(np.linspace(-3, 3, columns), np.linspace(-2.5, 2.5, rows))
     index = np.arange(x.size).reshape(x.shape)
     a, b, c, d = (part.ravel() for part in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]))
     faces = np.vstack([np.stack([a, c, b], axis=1), np.stack([a, d, c], axis=1)]).astype(np.int32)
@@ -73,7 +74,7 @@ def plane() -> Mesh:
     return Mesh(vertices, faces, np.full((x.size, 3), 90, np.uint8), extra={"support": support})
 
 
-def sparse_model(folder: Path) -> None:
+def sparse_model(folder: Path, registered: Sequence[int] = REGISTERED) -> None:
     model = pycolmap.Reconstruction()
     params = [FOCAL, FOCAL, 80, 64]
     model.add_camera_with_trivial_rig(
@@ -82,7 +83,7 @@ def sparse_model(folder: Path) -> None:
     grid = np.stack(np.meshgrid(np.arange(-3, 3, 0.12), np.arange(-2.4, 2.4, 0.12)), axis=-1).reshape(-1, 2)
     points = np.column_stack([grid, np.full(len(grid), DEPTH)])
     ids = [model.add_point3D(point, pycolmap.Track(), np.zeros(3, np.uint8)) for point in points]
-    for frame in REGISTERED:
+    for frame in registered:
         in_camera = points - [STEP * frame, 0, 0]
         xy = FOCAL * in_camera[:, :2] / DEPTH + [80, 64]
         seen = np.flatnonzero(((xy > 0) & (xy < [160, 128])).all(axis=1))
@@ -103,6 +104,17 @@ def sparse_model(folder: Path) -> None:
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("inputs")
+    write_inputs(root)
+    sparse_model(root / "extend" / "model")
+    write(root / "extend" / "registered.json", REGISTERED)
+    (root / "mesh").mkdir()
+    write_mesh(root / "mesh" / "mesh_poisson.ply", plane())
+    (root / "fuse").mkdir()
+    return root
+
+
+def write_inputs(root: Path) -> None:
+    """The video, and the results of the stages before the model."""
     (root / "probe").mkdir()
     probe_video(make_video(root / "video.mp4", every_ms(80, N_FRAMES))).write(root / "probe")
     frames = [
@@ -112,6 +124,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     crop = {"x0": 0, "y0": 0, "x1": 160, "y1": 128, "source_width": 160, "source_height": 128}
     write(root / "frames" / "frames.json", frames)
     write(root / "frames" / "crop.json", crop)
+    write(root / "frames" / "damaged.json", [6])
     rows = [
         {
             "id": i,
@@ -127,12 +140,6 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for i, (source, label, box, time_s) in enumerate(DETECTIONS)
     ]
     write(root / "annotations" / "detections.json", rows)
-    sparse_model(root / "extend" / "model")
-    write(root / "extend" / "registered.json", REGISTERED)
-    (root / "mesh").mkdir()
-    write_mesh(root / "mesh" / "mesh_poisson.ply", plane())
-    (root / "fuse").mkdir()
-    return root
 
 
 def run_all(inputs: Path, out: Path, settings: Settings = SETTINGS) -> tuple[Path, dict[str, Facts]]:

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from core.query import Result
-from core.viewer.deliver import POLICY
+from core.viewer.policy import POLICY
 from tests.core.making_plates import CROP
 from tests.web.making_page import FAR_FINDING, FRAMES, HOSTILE, NEAR_FINDING, NEAR_PLACE, write_refused, write_result
 

@@ -1,0 +1,110 @@
+"""Whole published results of a small scene: the stages from mapping on, and what publishing makes of them.
+
+    python -m tests.core.making_results     writes tests/data/results anew
+
+`two_models` has two models of one plane, each with defects; `refused` is a run whose search found no model.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+from core.report.load import load_tables
+from core.report.record import RunRecord, TaskRecord
+from core.settings import make_settings
+from core.stage import Facts, StageTask
+from core.stages import map_defects, pictures, timeline, viewer
+from core.states import RunState, TaskState
+from core.surface.ply import write_mesh
+from core.task_key import key_of
+from core.videos import Recording
+from tests.core.test_mapping_stages import SETTINGS, plane, sparse_model, write, write_inputs
+from worker.publish import publish
+
+RESULTS = Path(__file__).parents[1] / "data" / "results"
+REGISTERED = {0: [0, 1, 2, 3], 1: [5, 6, 7]}
+"""Frames of each model."""
+_FRAME = {"n_frames": 8, "n_search": 8, "crop": [0, 0, 160, 128], "source_width": 160, "source_height": 128}
+_VERSIONS = {"bladeatlas": "test"}
+"""The real ones would change the files with every release."""
+
+
+def make(name: str, out: Path) -> None:
+    """Make one of the results in a new folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        {"two_models": _two_models, "refused": _refused}[name](work, out)
+    shutil.rmtree(out / ".bladeatlas")
+
+
+def _two_models(work: Path, out: Path) -> None:
+    folders, facts = _begun(work)
+    for piece, registered in REGISTERED.items():
+        extend, mesh = work / key_of("extend", piece), work / key_of("mesh", piece)
+        sparse_model(extend / "model", registered)
+        write(extend / "registered.json", registered)
+        mesh.mkdir()
+        write_mesh(mesh / "mesh_poisson.ply", plane(41, 35))
+        folders |= {extend.name: extend, mesh.name: mesh}
+        facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
+        for stage in (map_defects, timeline, viewer):
+            _run(stage, piece, work, folders, facts)
+    _publish(_record(facts, folders), folders, out)
+
+
+def _refused(work: Path, out: Path) -> None:
+    folders, facts = _begun(work)
+    record = _record(facts, folders)
+    reason, message = "no_reconstruction", "no case has a model"
+    lost = TaskRecord("reduce_coarse", TaskState.FAILED, reason, message)
+    ended = replace(
+        record,
+        state=RunState.FAILED,
+        tasks=[*record.tasks, lost],
+        failed_stage="reduce_coarse",
+        reason=reason,
+        message=message,
+    )
+    _publish(ended, folders, out)
+
+
+def _begun(work: Path) -> tuple[dict[str, Path], dict[str, Facts]]:
+    """Results of the stages before the model, and their facts."""
+    write_inputs(work)
+    folders = {name: work / name for name in ("probe", "frames", "annotations")}
+    facts: dict[str, Facts] = {"probe": {"n_frames": 8, "duration_s": 0.64}, "frames": dict(_FRAME), "annotations": {}}
+    _run(pictures, 0, work, folders, facts)
+    return folders, facts
+
+
+def _run(stage: ModuleType, piece: int, work: Path, folders: dict[str, Path], facts: dict[str, Facts]) -> None:
+    key = key_of(stage.__name__.rsplit(".", 1)[-1], piece)
+    out = work / key
+    out.mkdir()
+    args = {"piece": piece} if piece else {}
+    task = StageTask(key, args, SETTINGS, dict(folders), dict(facts), (Recording(work / "video.mp4"),), out)
+    facts[key] = stage.run(task).facts
+    folders[key] = out
+
+
+def _record(facts: Mapping[str, Facts], folders: Mapping[str, Path]) -> RunRecord:
+    tasks = [TaskRecord(key, TaskState.SUCCEEDED, facts=own) for key, own in facts.items()]
+    settings = make_settings("default", {"mapping.method": "thesis"})
+    return RunRecord(settings, RunState.SUCCEEDED, tasks, load_tables(folders), {"video": "aa"}, _VERSIONS)
+
+
+def _publish(record: RunRecord, folders: Mapping[str, Path], out: Path) -> None:
+    hidden = out / ".bladeatlas"
+    hidden.mkdir(parents=True)
+    publish(record, folders, out, hidden)
+
+
+if __name__ == "__main__":
+    for _name in ("two_models", "refused"):
+        shutil.rmtree(RESULTS / _name, ignore_errors=True)
+        make(_name, RESULTS / _name)

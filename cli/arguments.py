@@ -158,6 +158,18 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     row.add_argument("--set", action="append", default=[], metavar="count=N", help="what is known: blades in the row")
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
     row.add_argument("--json", action="store_true", help="print row.json")
+    view = _add(commands, "view", "open a result in the browser: findings, surface, frames, timeline")
+    view.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+    view.add_argument("--no-browser", dest="browser", action="store_false", help="only print the address")
+    view.add_argument("--port", type=int, default=0, metavar="N", help="port of this machine to serve at (a free one)")
+    view.add_argument(
+        "--video",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="video of a result that keeps no pictures, of several each in their order: builds the page again",
+    )
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
         one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")

@@ -142,18 +142,6 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     views.add_argument("--defect", metavar="ID", help="or the place of a defect: D1, or 1")
     views.add_argument("--video", type=int, metavar="N", help="of several videos, only frames of this one, from 0")
     views.add_argument("--limit", type=int, default=20, metavar="N", help="frames listed, at most (20)")
-    view = _add(commands, "view", "open a result in the browser: findings, surface, frames, timeline")
-    view.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
-    view.add_argument("--no-browser", dest="browser", action="store_false", help="only print the address")
-    view.add_argument("--port", type=int, default=0, metavar="N", help="port of this machine to serve at (a free one)")
-    view.add_argument(
-        "--video",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="video of a result that keeps no pictures, of several each in their order: builds the page again",
-    )
     row = _add(commands, "row", "find the row of blades of a result; write row.json and the column `blade` into it")
     row.add_argument("--set", action="append", default=[], metavar="count=N", help="what is known: blades in the row")
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")

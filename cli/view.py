@@ -72,7 +72,7 @@ class _Handler(SimpleHTTPRequestHandler):
     """Files of the pages, and nothing else that lies in the result."""
 
     server_version, sys_version = "BladeAtlas", ""
-    extensions_map = {  # noqa: RUF012 - as the base class declares it
+    extensions_map = {  # noqa: RUF012 - the base class declares it so
         ".html": "text/html; charset=utf-8",
         ".js": "text/javascript; charset=utf-8",
         ".css": "text/css; charset=utf-8",

@@ -20,6 +20,9 @@ from core.scene.detection import REASONS, Outcome
 from core.scene.frame import image_name
 from core.viewer.scene import FRAMES, Pictures, ViewerScene, best_frames
 
+Row = Mapping[str, Any]
+"""A row of a published table: text, numbers and lists of them, as JSON holds them."""
+
 SCHEMA_VERSION = 1
 UNKNOWN_ROW: JsonObject = {"status": "unknown", "reason": "not_computed"}
 
@@ -54,7 +57,7 @@ class ViewerSource:
     model: int = 0
     models: tuple[int, ...] = (0,)
     """Numbers of all models that have a page."""
-    row: JsonObject | None = None
+    row: Row | None = None
     """The object of row.json."""
     sigmas: Mapping[int, float | None] | None = None
     """Standard deviation of the place of a detection, by id, model units."""
@@ -127,7 +130,7 @@ def _shared(source: ViewerSource) -> str:
     return f"../../../{VIEWER}/" if source.model else ""
 
 
-def _size(source: ViewerSource, frame: Mapping[str, Any]) -> tuple[float, float]:
+def _size(source: ViewerSource, frame: Row) -> tuple[float, float]:
     """Width and height of a source frame, px."""
     if frame.get("width") and frame.get("height"):
         return float(frame["width"]), float(frame["height"])
@@ -136,7 +139,7 @@ def _size(source: ViewerSource, frame: Mapping[str, Any]) -> tuple[float, float]
     return 1.0, 1.0
 
 
-def _videos(frame: Mapping[str, Any]) -> list[JsonObject]:
+def _videos(frame: Row) -> list[JsonObject]:
     lengths = frame.get("videos") or [frame]
     return [
         {
@@ -157,7 +160,7 @@ def _sprite(source: ViewerSource) -> JsonObject | None:
     return {"file": f"{_shared(source)}{SPRITE}", **sprite.__dict__}
 
 
-def _frame(row: Mapping[str, Any], source: ViewerSource) -> JsonObject:
+def _frame(row: Row, source: ViewerSource) -> JsonObject:
     index, pictures, scene = int(row["index"]), source.pictures, source.shown_scene
     pose = None if scene is None else scene.poses.get(index)
     reason = None if pose is not None else _frame_reason(row, source)
@@ -182,7 +185,7 @@ def _frame(row: Mapping[str, Any], source: ViewerSource) -> JsonObject:
     }
 
 
-def _frame_reason(row: Mapping[str, Any], source: ViewerSource) -> FrameReason:
+def _frame_reason(row: Row, source: ViewerSource) -> FrameReason:
     if not source.trusted:
         return FrameReason.NO_MODEL
     if row.get("model") not in (None, source.model):
@@ -196,7 +199,7 @@ _RENAMED = ("box_x1", "box_y1", "box_x2", "box_y2", "outcome", "rung", "defect_i
 """Columns of a detection that have another form here."""
 
 
-def _detection(row: Mapping[str, Any], source: ViewerSource, size: tuple[float, float]) -> JsonObject:
+def _detection(row: Row, source: ViewerSource, size: tuple[float, float]) -> JsonObject:
     width, height = size
     known = None if source.pictures is None else source.pictures.detections.get(row["id"])
     here = row["outcome"] != Outcome.UNPLACED and row.get("model") in (None, source.model)
@@ -217,7 +220,7 @@ def _detection(row: Mapping[str, Any], source: ViewerSource, size: tuple[float, 
     }
 
 
-def _defect(record: Mapping[str, Any], scene: ViewerScene | None) -> JsonObject:
+def _defect(record: Row, scene: ViewerScene | None) -> JsonObject:
     extent = record.get("extent") or {}
     views = record.get("frames") or ()
     best = next((view for view in views if view.get("detected")), next(iter(views), None))
@@ -231,7 +234,7 @@ def _defect(record: Mapping[str, Any], scene: ViewerScene | None) -> JsonObject:
     }
 
 
-def _measured(record: Mapping[str, Any], extent: Mapping[str, Any]) -> JsonObject:
+def _measured(record: Row, extent: Row) -> JsonObject:
     """The size that findings are ranked by: the length where it was measured, else the extent."""
     if record.get("length") is not None:
         unit = record.get("length_unit") or MODEL_UNIT
@@ -240,7 +243,7 @@ def _measured(record: Mapping[str, Any], extent: Mapping[str, Any]) -> JsonObjec
     return {"size": extent.get("value"), "size_sigma": extent.get("sigma"), "size_unit": unit}
 
 
-def _flag(flag: Mapping[str, Any]) -> JsonObject:
+def _flag(flag: Row) -> JsonObject:
     return {
         "code": flag["code"],
         "severity": flag["severity"],

@@ -43,6 +43,8 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("HEAD", f"{_ONE}/artifacts/{{path}}"): Scope.READ,
     ("GET", f"{_ONE}/archive.zip"): Scope.READ,
     ("GET", f"{_ONE}/frames/{{index}}.jpg"): Scope.READ,
+    ("GET", f"{_ONE}/viewer/{{path}}"): Scope.READ,
+    ("GET", f"{_ONE}/models/{{model}}/viewer/{{path}}"): Scope.READ,
     ("POST", "/v1/uploads"): Scope.SUBMIT,
     ("HEAD", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
     ("PATCH", "/v1/uploads/{upload_id}"): Scope.SUBMIT,

@@ -55,6 +55,8 @@ def test_the_nearest_name_is_told(client: TestClient) -> None:
     told = 0
     for method, path, names in routes(client):
         for name in names:
+            if name.startswith("metadata."):
+                continue  # any name may stand behind it
             wrong = name[:-1] + name[-1] * 2
             answer = client.request(method, fill(path), params={wrong: "1"}, headers=TUS)
             assert f"unknown query parameter '{wrong}'; did you mean '{name}'?" in answer.json()["detail"]

@@ -8,7 +8,8 @@ from tests.core.making_rows import detection, mapped, unplaced
 
 CONTRACT = (
     "id key time_s label score box_x1 box_y1 box_x2 box_y2 frame_index outcome reason rung support_points "
-    "x y z confidence blade defect_id model video"
+    "x y z confidence blade defect_id model video "
+    "length length_sigma width width_sigma area area_sigma length_unit size_from"
 )
 
 

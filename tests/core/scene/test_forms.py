@@ -57,7 +57,7 @@ def test_a_record_by_the_thesis_has_no_keys_of_the_other_rules() -> None:
     assert defect(2).to_dict()["confidence"] is None
     assert defect(2).to_dict()["blade"] is None
     fields = set(DefectRecord.__dataclass_fields__)
-    assert set(BY_CASTING.to_dict()) == fields
+    assert set(BY_CASTING.to_dict()) == fields - {"size"}, "nothing measured it"
 
 
 @pytest.mark.parametrize(

@@ -162,7 +162,7 @@ def test_summary_and_quality(finished: tuple[Path, Ended]) -> None:
     assert summary["state"] == "succeeded"
     for name in ("parameters", "fingerprint", "versions", "stages"):
         assert summary[name], name
-    assert set(summary["scale"]) == {"unit", "value", "sigma"}
+    assert set(summary["scale"]) == {"unit", "value", "sigma", "source"}
     for stage in summary["stages"]:
         assert {"name", "state", "seconds", "peak_rss_bytes"} <= set(stage)
         assert stage["peak_rss_bytes"] < 4 * 2**30
@@ -250,7 +250,7 @@ def test_changed_mapping_computes_mapping_only(finished: tuple[Path, Ended], tmp
     shutil.copytree(finished[0], out)
     ended = run(out, "--set", "mapping.radius_fraction=0.02")
     assert ended.code == 0, ended.errors
-    assert ended.computed() == {"map_defects", "timeline", "gallery"}
+    assert ended.computed() == {"map_defects", "timeline", "gallery", "viewer"}
     before, after = fingerprint(finished[0]), fingerprint(out)
     changed = {name for name in before if before[name] != after.get(name)}
     assert "mapping/mesh_defects.ply" in changed

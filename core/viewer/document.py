@@ -89,6 +89,7 @@ def viewer_document(source: ViewerSource) -> JsonObject:
     return {
         "schema_version": SCHEMA_VERSION,
         "title": report.summary.get("label") or report.summary.get("external_id") or "Inspection",
+        "fingerprint": report.summary.get("fingerprint"),
         "model": {
             "index": source.model,
             "count": len(source.models),

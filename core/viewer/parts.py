@@ -13,9 +13,9 @@ from scipy.spatial import cKDTree
 from core.surface.glb import vertex_normals
 from core.surface.ply import Mesh
 
-MAX_FACES = 240_000
-"""Triangles of all parts together, at most. With 12 bytes of indices, and 24 to 28 of attributes for every second
-triangle, such a file has 5.8 to 6.3 MB; design and page allow 300,000 triangles and 7 MB."""
+MAX_FACES = 300_000
+"""Triangles of all parts together, at most. With 6 bytes of indices, and 24 to 28 of attributes for every second
+triangle, such a file has 5.4 to 6.0 MB; the page is made for 7 MB."""
 PATCH_SHARE = 0.5
 """Share of them that the defects may have together; larger ones lose triangles as well."""
 _BOUNDARY = 100.0
@@ -49,10 +49,10 @@ def viewer_parts(mesh: Mesh, defects: Mapping[int, Sequence[int]], max_faces: in
     owner = np.full(len(mesh.faces), -1, np.int64)
     for number in sorted(defects, reverse=True):
         owner[np.asarray(defects[number], np.int64)] = number
-    patches = {number: _cut(whole, owner == number) for number in sorted(defects) if (owner == number).any()}
+    patches = {number: cut(whole, owner == number) for number in sorted(defects) if (owner == number).any()}
     patches = _within(patches, int(PATCH_SHARE * max_faces))
     left = max_faces - sum(len(patch.faces) for patch in patches.values())
-    rest = _decimated(_cut(whole, owner < 0), left)
+    rest = _decimated(cut(whole, owner < 0), left)
     return {SURFACE: rest, **{part_name(number): patch for number, patch in patches.items()}}
 
 
@@ -64,8 +64,8 @@ def _within(patches: Mapping[int, Mesh], budget: int) -> dict[int, Mesh]:
     return {number: _decimated(patch, len(patch.faces) * budget // total) for number, patch in patches.items()}
 
 
-def _cut(mesh: Mesh, faces: Flags) -> Mesh:
-    """Some faces of a mesh with the vertices that they use."""
+def cut(mesh: Mesh, faces: Flags | NDArray[np.intp]) -> Mesh:
+    """Some faces of a mesh, by flags or in the order of their numbers, with the vertices that they use."""
     chosen = mesh.faces[faces]
     used, flat = np.unique(chosen, return_inverse=True)
     return _rows(mesh, used, flat.reshape(-1, 3).astype(np.int32))

@@ -6,6 +6,7 @@ Plain numbers of one or two bytes: no decoder is needed, and every viewer that k
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,6 @@ from core.surface.glb import (
     BYTE,
     INDEX_BUFFER,
     UBYTE,
-    UINT,
     USHORT,
     GlbBuffer,
     linear_rgba,
@@ -25,9 +25,12 @@ from core.surface.glb import (
     write_document,
 )
 from core.surface.ply import Mesh
+from core.viewer.parts import cut
 
 _EXTENSION = "KHR_mesh_quantization"
 _STEPS = 65535
+_MAX_VERTICES = 65535
+"""Vertices that two bytes can number: the largest number is kept for restarts (glTF 2.0, 3.7.2.1)."""
 _HALF_TURN_ABOUT_X = [1.0, 0.0, 0.0, 0.0]
 """As a quaternion; `core.surface.glb.GLTF_FROM_WORLD` as a rotation."""
 _GREY = (180, 180, 180)
@@ -41,7 +44,7 @@ def write_quantized_glb(path: Path, parts: Mapping[str, Mesh], unit: str = "mode
     Positions are multiples of a 65535th of the longest side of the box around all parts, so that rims that were one
     stay one. The nodes undo that: below their common parent `world` coordinates are those of the model, and the parent
     turns them into glTF's y-up ones. Attributes: POSITION, NORMAL, COLOR_0 (linear), `_SUPPORT` in [0, 1] and `_BLADE`
-    (0 = none).
+    (0 = none). A node has several primitives where two bytes could not number its vertices.
 
     Args:
         path: file to write.
@@ -52,7 +55,7 @@ def write_quantized_glb(path: Path, parts: Mapping[str, Mesh], unit: str = "mode
     vertices = np.concatenate([mesh.vertices for mesh in filled.values()]) if filled else np.zeros((1, 3))
     low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max()) or 1.0
     buffer = GlbBuffer()
-    meshes = [{"name": name, "primitives": [_primitive(buffer, mesh, low, size)]} for name, mesh in filled.items()]
+    meshes = [{"name": name, "primitives": _primitives(buffer, mesh, low, size)} for name, mesh in filled.items()]
     undo = {"translation": low.tolist(), "scale": [size, size, size]}
     nodes: list[dict[str, object]] = [{"name": name, "mesh": i, **undo} for i, name in enumerate(filled)]
     world: dict[str, object] = {"name": "world", "rotation": _HALF_TURN_ABOUT_X}
@@ -72,6 +75,21 @@ def write_quantized_glb(path: Path, parts: Mapping[str, Mesh], unit: str = "mode
     write_document(path, document, bytes(buffer.data))
 
 
+def _primitives(buffer: GlbBuffer, mesh: Mesh, low: F64, size: float) -> list[dict[str, object]]:
+    # Of the whole: at a cut both sides have the same normals, and none is seen.
+    whole = replace(mesh, normals=vertex_normals(mesh)) if mesh.normals is None else mesh
+    return [_primitive(buffer, piece, low, size) for piece in _pieces(whole)]
+
+
+def _pieces(mesh: Mesh) -> list[Mesh]:
+    """Halves of halves across the longest side, until two bytes can number the vertices of each."""
+    if len(mesh.vertices) <= _MAX_VERTICES:
+        return [mesh]
+    axis = int(np.ptp(mesh.vertices, axis=0).argmax())
+    order = np.argsort(mesh.vertices[mesh.faces[:, 0], axis], kind="stable")
+    return [piece for half in np.array_split(order, 2) if len(half) for piece in _pieces(cut(mesh, half))]
+
+
 def _primitive(buffer: GlbBuffer, mesh: Mesh, low: F64, size: float) -> dict[str, object]:
     steps = np.rint((mesh.vertices - low) / size * _STEPS).astype("<u2")
     normals = unit_rows(vertex_normals(mesh) if mesh.normals is None else mesh.normals)
@@ -88,5 +106,5 @@ def _primitive(buffer: GlbBuffer, mesh: Mesh, low: F64, size: float) -> dict[str
         if blade.any()
         else buffer.add_zeros(n, UBYTE, "SCALAR"),
     }
-    indices = buffer.add(mesh.faces.astype("<u4").ravel(), UINT, "SCALAR", INDEX_BUFFER)
+    indices = buffer.add(mesh.faces.astype("<u2").ravel(), USHORT, "SCALAR", INDEX_BUFFER)
     return {"attributes": attributes, "indices": indices, "material": 0, "mode": 4}

@@ -106,6 +106,8 @@ def test_models_lead_to_each_other() -> None:
     assert {one["model"] for one in second["defects"]} == {1}
     assert not {one["id"] for one in first["defects"]} & {one["id"] for one in second["defects"]}
     assert {event["defect_id"] for event in second["events"]} == {one["id"] for one in second["defects"]}
+    summary = json.loads((RESULTS / "two_models/summary.json").read_text(encoding="utf-8"))
+    assert first["fingerprint"] == second["fingerprint"] == summary["fingerprint"]
     registered = [index for index, frame in enumerate(second["frames"]) if frame["registered"]]
     assert registered == [5, 6, 7]
     assert second["frames"][0]["reason"] == "in_another_model"

@@ -181,6 +181,25 @@ def test_blades_cost_nothing_until_they_are_known(tmp_path: Path) -> None:
     assert len(known.binary) - len(without.binary) == 4 * len(mesh.vertices)
 
 
+def test_a_node_has_as_many_primitives_as_two_bytes_need(tmp_path: Path) -> None:
+    mesh = plane(400, 350)
+    write_quantized_glb(tmp_path / "a.glb", {SURFACE: mesh})
+    glb = Glb(tmp_path / "a.glb")
+    node = glb.node(SURFACE)
+    pieces = []
+    for primitive in glb.document["meshes"][node["mesh"]]["primitives"]:
+        indices = glb.values(primitive["indices"])
+        assert indices.dtype == np.uint16
+        assert indices.max() < 65535
+        places = glb.values(primitive["attributes"]["POSITION"]) / 65535 * node["scale"] + node["translation"]
+        pieces.append(places[indices.reshape(-1, 3)].mean(axis=1))
+    assert len(pieces) == 4, "140,000 vertices: a half of them is still too many"
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    distance, nearest = cKDTree(middles).query(np.vstack(pieces))
+    assert distance.max() < 6 / 65535
+    assert (np.sort(nearest) == np.arange(len(middles))).all(), "every triangle once"
+
+
 def test_an_empty_surface_is_a_glb_too(tmp_path: Path) -> None:
     write_quantized_glb(tmp_path / "a.glb", {SURFACE: Mesh(np.zeros((0, 3)))})
     assert [node["name"] for node in Glb(tmp_path / "a.glb").document["nodes"]] == ["world"]

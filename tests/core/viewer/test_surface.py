@@ -196,7 +196,7 @@ def test_a_node_has_as_many_primitives_as_two_bytes_need(tmp_path: Path) -> None
     assert len(pieces) == 4, "140,000 vertices: a half of them is still too many"
     middles = mesh.vertices[mesh.faces].mean(axis=1)
     distance, nearest = cKDTree(middles).query(np.vstack(pieces))
-    assert distance.max() < 6 / 65535
+    assert np.max(distance) < 6 / 65535
     assert (np.sort(nearest) == np.arange(len(middles))).all(), "every triangle once"
 
 

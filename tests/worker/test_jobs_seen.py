@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import threading
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,12 +20,9 @@ from store.accounts import Accounts
 from store.announcing import Announcements
 from store.db import Database
 from store.inspections import Inspections
-from store.models import Worker
 from store.monitoring import WorkerRegistry
 from store.records import InputFiles
-from tests.conftest import service_url
 from tests.databases import database
-from tests.worker.deployment import Deployment, wait_for
 from tests.worker.fake_stages import GRAPH, SMALL
 from worker.broker import TaskQueue
 
@@ -107,51 +103,6 @@ def listening(app: Celery) -> Iterator[State]:
     yield state
     over.set()
     thread.join()
-
-
-@pytest.mark.parametrize("broker", BROKERS)
-def test_monitors_see_each_job_by_name_with_its_worker_and_its_end(broker: str, tmp_path: Path, db: Database) -> None:
-    url, name = service_url(broker), f"inspection-{uuid.uuid4().hex[:8]}"
-    environment = {
-        "BLADEATLAS_DATABASE_URL": db.engine.url.render_as_string(hide_password=False),
-        "BLADEATLAS_BROKER_URL": url,
-    }
-    place, app = Deployment(tmp_path, db, environment), Celery(broker=url, set_as_current=False)
-    with listening(app) as state:
-        place.start("worker", "--workers", "1")
-        try:
-            place.create(name, part__000={"sleep_s": 12}, part__001={"raise": "stage"})
-            wait_for(lambda: place.started(name)["part/000"] == 1)
-            with db.read() as session:
-                worker = f"bladeatlas@{session.query(Worker).one().name}"
-            shown: dict[str, Any] = {}
-
-            def answers() -> bool:
-                # A busy machine may take longer than an inspection waits.
-                shown.update(app.control.inspect([worker], timeout=5).active() or {})
-                return worker in shown
-
-            wait_for(answers)
-            assert [(job["name"], job["args"]) for job in shown[worker]] == [("bladeatlas.part", [name, "000"])]
-            place.wait(name)
-            assert place.accepted_once(name) is False, "one part failed"
-            # A doubled message: its task is over.
-            app.send_task("bladeatlas.split", (name,), exchange="", routing_key="bladeatlas.cpu")
-            wait_for(lambda: (("split",), "IGNORED") in ends(state, name))
-        finally:
-            place.stop()
-    assert sorted(ends(state, name)) == [
-        (("join",), "SUCCESS"),
-        (("last",), "SUCCESS"),
-        (("part", "000"), "SUCCESS"),
-        (("part", "001"), "FAILURE"),
-        (("split",), "IGNORED"),
-        (("split",), "SUCCESS"),
-    ]
-    failed = next(job for job in state.tasks.values() if job.state == "FAILURE" and name in job.args)
-    assert "stage_failed: no surface" in failed.exception
-    assert {job.worker.hostname for job in state.tasks.values() if name in job.args} == {worker}
-    assert place.started(name)["split"] == 1
 
 
 def ends(state: State, inspection: str) -> list[tuple[tuple[str, ...], str]]:

@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-real bench-inputs bench-service soak mutate versions lock clean
+.PHONY: help setup demo web lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-real bench-inputs bench-service soak mutate versions lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -16,6 +16,9 @@ setup: ## put everything into .venv
 
 demo: setup ## run the whole method on the sample, result in out/demo
 	@$(BIN)/bladeatlas run samples/turbine.mp4 samples/turbine.json --out $(OUT)
+
+web: setup ## build the page of results from web/ into core/viewer/bundle (Node from PyPI where there is none)
+	@scripts/web.sh
 
 lint: setup
 	$(BIN)/ruff check .

@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from cli.terminal import duration
+from core.outputs import VIEWER_PAGE
 from worker.events import Outcome
 
 SHOWN_FILES = (
-    ("gallery/index.html", "detections on the frames, the mesh from two sides: open this first"),
+    (VIEWER_PAGE, "findings, surface, frames and timeline in one page: open this first"),
+    ("gallery/index.html", "detections on the frames, the mesh from two sides"),
     ("mapping/mesh_defects.glb", "defect-coloured surface, for any 3D viewer"),
     ("mapping/defects.json", "one record per physical defect"),
     ("mapping/detections.csv", "one row per input detection"),
@@ -71,7 +73,9 @@ def _verdict(quality: dict[str, Any]) -> list[str]:
 def _files(out: Path) -> list[str]:
     shown = [(out / name, meaning) for name, meaning in SHOWN_FILES if (out / name).exists()]
     width = max((len(str(path)) for path, _ in shown), default=0)
-    return ["", *(f"  {path!s:<{width}}  {meaning}" for path, meaning in shown)]
+    page = out / VIEWER_PAGE
+    last = ["", f"open {page} in a browser, or: bladeatlas view {out}"] if page.exists() else []
+    return ["", *(f"  {path!s:<{width}}  {meaning}" for path, meaning in shown), *last]
 
 
 def _number(value: Any) -> str:

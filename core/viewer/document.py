@@ -9,19 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 from core.flags import Verdict
 from core.json_files import JsonObject
 from core.outputs import SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE
 from core.report.build import Report
+from core.report.record import Item
 from core.scene.defect import MODEL_UNIT, DefectRecord
 from core.scene.detection import REASONS, Outcome
 from core.scene.frame import image_name
 from core.viewer.scene import FRAMES, Pictures, ViewerScene, best_frames
-
-Row = Mapping[str, Any]
-"""A row of a published table: text, numbers and lists of them, as JSON holds them."""
 
 SCHEMA_VERSION = 1
 UNKNOWN_ROW: JsonObject = {"status": "unknown", "reason": "not_computed"}
@@ -57,7 +54,7 @@ class ViewerSource:
     model: int = 0
     models: tuple[int, ...] = (0,)
     """Numbers of all models that have a page."""
-    row: Row | None = None
+    row: Item | None = None
     """The object of row.json."""
     sigmas: Mapping[int, float | None] | None = None
     """Standard deviation of the place of a detection, by id, model units."""
@@ -130,7 +127,7 @@ def _shared(source: ViewerSource) -> str:
     return f"../../../{VIEWER}/" if source.model else ""
 
 
-def _size(source: ViewerSource, frame: Row) -> tuple[float, float]:
+def _size(source: ViewerSource, frame: Item) -> tuple[float, float]:
     """Width and height of a source frame, px."""
     if frame.get("width") and frame.get("height"):
         return float(frame["width"]), float(frame["height"])
@@ -139,7 +136,7 @@ def _size(source: ViewerSource, frame: Row) -> tuple[float, float]:
     return 1.0, 1.0
 
 
-def _videos(frame: Row) -> list[JsonObject]:
+def _videos(frame: Item) -> list[JsonObject]:
     lengths = frame.get("videos") or [frame]
     return [
         {
@@ -160,7 +157,7 @@ def _sprite(source: ViewerSource) -> JsonObject | None:
     return {"file": f"{_shared(source)}{SPRITE}", **sprite.__dict__}
 
 
-def _frame(row: Row, source: ViewerSource) -> JsonObject:
+def _frame(row: Item, source: ViewerSource) -> JsonObject:
     index, pictures, scene = int(row["index"]), source.pictures, source.shown_scene
     pose = None if scene is None else scene.poses.get(index)
     reason = None if pose is not None else _frame_reason(row, source)
@@ -185,7 +182,7 @@ def _frame(row: Row, source: ViewerSource) -> JsonObject:
     }
 
 
-def _frame_reason(row: Row, source: ViewerSource) -> FrameReason:
+def _frame_reason(row: Item, source: ViewerSource) -> FrameReason:
     if not source.trusted:
         return FrameReason.NO_MODEL
     if row.get("model") not in (None, source.model):
@@ -199,7 +196,7 @@ _RENAMED = ("box_x1", "box_y1", "box_x2", "box_y2", "outcome", "rung", "defect_i
 """Columns of a detection that have another form here."""
 
 
-def _detection(row: Row, source: ViewerSource, size: tuple[float, float]) -> JsonObject:
+def _detection(row: Item, source: ViewerSource, size: tuple[float, float]) -> JsonObject:
     width, height = size
     known = None if source.pictures is None else source.pictures.detections.get(row["id"])
     here = row["outcome"] != Outcome.UNPLACED and row.get("model") in (None, source.model)
@@ -220,7 +217,7 @@ def _detection(row: Row, source: ViewerSource, size: tuple[float, float]) -> Jso
     }
 
 
-def _defect(record: Row, scene: ViewerScene | None) -> JsonObject:
+def _defect(record: Item, scene: ViewerScene | None) -> JsonObject:
     extent = record.get("extent") or {}
     views = record.get("frames") or ()
     best = next((view for view in views if view.get("detected")), next(iter(views), None))
@@ -234,7 +231,7 @@ def _defect(record: Row, scene: ViewerScene | None) -> JsonObject:
     }
 
 
-def _measured(record: Row, extent: Row) -> JsonObject:
+def _measured(record: Item, extent: Item) -> JsonObject:
     """The size that findings are ranked by: the length where it was measured, else the extent."""
     if record.get("length") is not None:
         unit = record.get("length_unit") or MODEL_UNIT
@@ -243,7 +240,7 @@ def _measured(record: Row, extent: Row) -> JsonObject:
     return {"size": extent.get("value"), "size_sigma": extent.get("sigma"), "size_unit": unit}
 
 
-def _flag(flag: Row) -> JsonObject:
+def _flag(flag: Item) -> JsonObject:
     return {
         "code": flag["code"],
         "severity": flag["severity"],

@@ -34,13 +34,17 @@ def write_pages(report: Report, folders: Mapping[str, Path], files: Mapping[str,
     trusted = report.verdict != Verdict.REFUSED
     pieces = [piece for piece in served_pieces(folders) if key_of("viewer", piece) in folders] if trusted else []
     models = (0, *pieces)
+    scenes = {model: _scene(folders, model) for model in models}
+    first = scenes[0]
+    if pictures is not None and first is not None and trusted:
+        pictures = pictures.with_full(first.full)
     written = []
     for model in models:
         below = f"models/{model}/" if model else ""
         confidence = files.get(f"{below}{CONFIDENCE}")
         source = ViewerSource(
             report=report,
-            scene=_scene(folders, model),
+            scene=scenes[model],
             pictures=pictures,
             model=model,
             models=models,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import open3d as o3d
@@ -89,10 +88,9 @@ def _decimated(mesh: Mesh, max_faces: int) -> Mesh:
     """
     if len(mesh.faces) <= max_faces:
         return mesh
-    open3d: Any = o3d  # its stubs lack these parts of it
-    full = open3d.geometry.TriangleMesh(
-        open3d.utility.Vector3dVector(mesh.vertices), open3d.utility.Vector3iVector(mesh.faces)
-    )
+    utility = o3d.utility  # type: ignore[attr-defined]  # its stubs lack these parts of it
+    corners, triangles = utility.Vector3dVector(mesh.vertices), utility.Vector3iVector(mesh.faces)
+    full = o3d.geometry.TriangleMesh(corners, triangles)  # type: ignore[attr-defined]  # the same
     thin = full.simplify_quadric_decimation(max_faces, boundary_weight=_BOUNDARY)
     vertices, faces = np.asarray(thin.vertices), np.asarray(thin.triangles, np.int32)
     _, nearest = cKDTree(mesh.vertices, balanced_tree=False, compact_nodes=False).query(vertices)

@@ -75,6 +75,8 @@ def build_pages(folder: Path, videos: Sequence[Path] = ()) -> list[str]:
             scene = _scene(folder, model, report, crop, made, said)
             if pictures is not None:
                 scene = _with_pictures(work, made, model, scene, report)
+                if model == 0 and scene is not None:
+                    pictures = pictures.with_full(scene.full)
             source = ViewerSource(
                 report,
                 scene,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from core.json_files import JsonObject, read_json, write_json
@@ -54,6 +54,10 @@ class Pictures:
     sprite: Sprite | None
     damaged: tuple[int, ...]
     detections: Mapping[int, Shown]
+
+    def with_full(self, frames: Collection[int]) -> Pictures:
+        """The same where the pictures of some frames were replaced by those at the source's size."""
+        return replace(self, scales={**self.scales, **dict.fromkeys(frames, 1.0)})
 
     def write(self, folder: Path) -> None:
         """Write the form that `read` reads."""

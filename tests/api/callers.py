@@ -44,7 +44,9 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("GET", f"{_ONE}/archive.zip"): Scope.READ,
     ("GET", f"{_ONE}/frames/{{index}}.jpg"): Scope.READ,
     ("GET", f"{_ONE}/viewer/{{path}}"): Scope.READ,
+    ("HEAD", f"{_ONE}/viewer/{{path}}"): Scope.READ,
     ("GET", f"{_ONE}/models/{{model}}/viewer/{{path}}"): Scope.READ,
+    ("HEAD", f"{_ONE}/models/{{model}}/viewer/{{path}}"): Scope.READ,
     ("POST", "/v1/uploads"): Scope.SUBMIT,
     ("HEAD", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
     ("PATCH", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
@@ -71,8 +73,10 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
 }
 FREE = {("OPTIONS", "/v1/uploads")}
 """Says what the server can do, to whoever asks."""
-HIDDEN = {("HEAD", f"{_ONE}/artifacts/{{path}}")}
+HIDDEN = {route for route in ROUTES if route[0] == "HEAD" and route[1].endswith("/{path}")}
 """Not in the description of the API."""
+_FILE = "quality.json"
+"""Name of a published file, and of one of every page."""
 OF_AN_ACCOUNT = ("{inspection_id}", "{upload_id}", "{key_id}", "{account_id}")
 BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/v1/inspections"): {"json": {"video_upload": "0" * 32}},
@@ -104,6 +108,7 @@ class Place:
         application.state.bladeatlas.keys.fresh_s = 0.0  # keys are made and ended behind the server's back
         self.key(Scope.READ)
         files = {"quality.json": b'{"flags": []}', "summary.json": b"{}"}
+        files |= dict.fromkeys((f"viewer/{_FILE}", f"models/1/viewer/{_FILE}"), b"{}")
         spare = Keys(self.backend.db).create("spare", "mine", [Scope.MANAGE])[0].id
         self.names = {
             "inspection_id": self.backend.finished("one", files, owner="mine", **ROWS),
@@ -111,8 +116,9 @@ class Place:
             "key_id": spare,
             "account_id": "mine",
             "name": "draft",
-            "path": "quality.json",
+            "path": _FILE,
             "index": "0",
+            "model": "1",
         }
 
     def key(self, *scopes: Scope, account: str = "mine", **more: Any) -> Headers:

@@ -43,3 +43,13 @@ def test_report_says_what_was_made(tmp_path: Path) -> None:
 
 def test_report_of_a_run_that_made_nothing(tmp_path: Path) -> None:
     assert report.lines(Outcome(RunState.FAILED, tmp_path, 1.0, 1, 0))[1].startswith("failed in 1.0 s")
+
+
+def test_a_run_ends_by_naming_the_page_to_open(tmp_path: Path) -> None:
+    (tmp_path / "viewer").mkdir()
+    without = report.lines(Outcome(RunState.SUCCEEDED, tmp_path, 1.0, 1, 0))
+    (tmp_path / "viewer" / "index.html").write_text("page")
+    last = report.lines(Outcome(RunState.SUCCEEDED, tmp_path, 1.0, 1, 0))[-1]
+    assert str(tmp_path / "viewer" / "index.html") in last
+    assert f"bladeatlas view {tmp_path}" in last
+    assert not any("bladeatlas view" in line for line in without)

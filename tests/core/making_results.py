@@ -14,8 +14,11 @@ from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
+from core.io.annotations import read_rows, write_rows
+from core.io.timeline import read_defects, read_events, write_timeline
 from core.report.load import load_tables
 from core.report.record import RunRecord, TaskRecord
+from core.scene.detection import Outcome
 from core.settings import make_settings
 from core.stage import Facts, StageTask
 from core.stages import map_defects, pictures, timeline, viewer
@@ -23,6 +26,7 @@ from core.states import RunState, TaskState
 from core.surface.ply import write_mesh
 from core.task_key import key_of
 from core.videos import Recording
+from core.viewer.deliver import bundle
 from tests.core.test_mapping_stages import SETTINGS, plane, sparse_model, write, write_inputs
 from worker.publish import publish
 
@@ -40,6 +44,18 @@ def make(name: str, out: Path) -> None:
         work = Path(folder)
         {"two_models": _two_models, "refused": _refused}[name](work, out)
     shutil.rmtree(out / ".bladeatlas")
+    for page in out.rglob("viewer"):
+        for file in bundle():
+            (page / file).unlink()
+
+
+def opened(name: str, out: Path) -> Path:
+    """A copy of a committed result with the built page, which is not committed once more; gives its folder."""
+    shutil.copytree(RESULTS / name, out)
+    for page in out.rglob("viewer"):
+        for file, content in bundle().items():
+            (page / file).write_bytes(content)
+    return out
 
 
 def _two_models(work: Path, out: Path) -> None:
@@ -52,9 +68,29 @@ def _two_models(work: Path, out: Path) -> None:
         write_mesh(mesh / "mesh_poisson.ply", plane(41, 35))
         folders |= {extend.name: extend, mesh.name: mesh}
         facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
-        for stage in (map_defects, timeline, viewer):
+        for stage in (map_defects, timeline):
             _run(stage, piece, work, folders, facts)
+        _number(folders[key_of("timeline", piece)], piece)
+        _run(viewer, piece, work, folders, facts)
     _publish(_record(facts, folders), folders, out)
+
+
+def _number(folder: Path, piece: int) -> None:
+    """Give the tables of a further model its number, and its defects and events their own: the thesis's rules, whose
+    short way is taken here, know one model alone."""
+    if not piece:
+        return
+    defects = [replace(one, id=one.id + 10, model=piece) for one in read_defects(folder)]
+    defects = [replace(one, events=tuple(event + 10 for event in one.events)) for one in defects]
+    events = [replace(one, event_id=one.event_id + 10, defect_id=one.defect_id + 10) for one in read_events(folder)]
+    rows = [
+        replace(one, model=piece, defect_id=None if one.defect_id is None else one.defect_id + 10)
+        if one.outcome == Outcome.MAPPED
+        else one
+        for one in read_rows(folder)
+    ]
+    write_timeline(folder, events, defects, [])
+    write_rows(folder, rows)
 
 
 def _refused(work: Path, out: Path) -> None:
@@ -62,15 +98,8 @@ def _refused(work: Path, out: Path) -> None:
     record = _record(facts, folders)
     reason, message = "no_reconstruction", "no case has a model"
     lost = TaskRecord("reduce_coarse", TaskState.FAILED, reason, message)
-    ended = replace(
-        record,
-        state=RunState.FAILED,
-        tasks=[*record.tasks, lost],
-        failed_stage="reduce_coarse",
-        reason=reason,
-        message=message,
-    )
-    _publish(ended, folders, out)
+    ended = replace(record, state=RunState.FAILED, tasks=[*record.tasks, lost], reason=reason, message=message)
+    _publish(replace(ended, failed_stage="reduce_coarse"), folders, out)
 
 
 def _begun(work: Path) -> tuple[dict[str, Path], dict[str, Facts]]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import json
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,11 +18,14 @@ from core.states import RunState
 from core.task_key import stage_of
 from core.viewer.deliver import bundle
 from store.db import Database, open_sqlite
+from store.files import ArtifactStore
 from store.inspections import Inspections
 from store.models import Base, CaseRow, DefectRow, DetectionRow, EventRow
+from store.publishing import Publishing, Ticket
 from tests.core.making_record import failed_record, full_record
 from tests.store.small_plan import FILES, GRAPH
-from worker.publish import publish, report_rows
+from worker.publish import Publisher, collected, publish, report_rows
+from worker.results import ResultFolders
 
 FILES_OF = {
     "confirm": ["model/cameras.bin"],
@@ -152,3 +157,26 @@ def read(database: Database, table: type[Base], key: str) -> list[dict[str, obje
     with database.read() as session:
         columns = table.__table__.columns
         return [dict(row) for row in session.execute(select(*columns).order_by(columns[key])).mappings()]
+
+
+def test_files_of_pages_lie_in_the_store_compressed_too(hidden: Path, tmp_path: Path) -> None:
+    store, results = ArtifactStore(tmp_path / "store"), ResultFolders(tmp_path / "results")
+    database = open_sqlite(hidden / "plan.db")
+    inspections = Inspections(database, GRAPH)
+    inspections.create("local", FILES, make_settings(), str(hidden.parent))
+    publisher = Publisher(Publishing(database), inspections, results, store, tmp_path / "scratch", "me")
+    ticket = Ticket("local", 1, 1)
+    with collected(full_record(), {}, tmp_path / "scratch") as wanted:
+        stored = publisher._store_files(ticket, wanted, threading.Event())
+    keys = set(store.list())
+    packed = {key for key in keys if key.endswith(".gz")}
+    assert packed == {f"{ticket.prefix}/{name}.gz" for name in PAGE}
+    assert keys - packed == {f"{ticket.prefix}/{one.path}" for one in stored}
+    for key in packed:
+        with store.open(key) as small, store.open(key.removesuffix(".gz")) as plain:
+            assert gzip.decompress(small.read()) == plain.read()
+    publisher._sweep(ticket, stored)
+    assert set(store.list()) == keys
+    publisher._sweep(ticket, [one for one in stored if one.path != "viewer/data.js"])
+    assert keys - set(store.list()) == {f"{ticket.prefix}/viewer/data.js", f"{ticket.prefix}/viewer/data.js.gz"}
+    database.close()

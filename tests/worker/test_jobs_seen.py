@@ -129,7 +129,7 @@ def test_monitors_see_each_job_by_name_with_its_worker_and_its_end(broker: str, 
             place.create(name, part__000={"sleep_s": 12}, part__001={"raise": "stage"})
             wait_for(lambda: place.started(name)["part/000"] == 1)
             with db.read() as session:
-                worker = f"bladeatlas@{session.query(Worker).one().name}"
+                worker = f"celery@{session.query(Worker).one().name}"
             shown: dict[str, Any] = {}
 
             def answers() -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from sqlalchemy import delete, func, select
+from sqlalchemy.dialects import postgresql, sqlite
 
 from core.states import InspectionState, TaskState
 from store.db import Database
@@ -82,11 +83,11 @@ class WorkerRegistry:
         """A worker is alive, and takes so many tasks side by side by message."""
         with self.db.write() as session:
             now = self.db.now(session)
-            row = session.get(Worker, name)
-            if row is None:
-                row = Worker(name=name, host=platform.node()[:128], queues=list(queues), started_at=now, seen_at=now)
-                session.add(row)
-            row.queues, row.slots, row.seen_at = list(queues), slots, now
+            known = {"queues": list(queues), "slots": slots, "seen_at": now}
+            insert = sqlite.insert if self.db.is_sqlite else postgresql.insert
+            statement = insert(Worker).values(name=name, host=platform.node()[:128], started_at=now, **known)
+            # Threads of a worker that starts report it at the same moment.
+            session.execute(statement.on_conflict_do_update(index_elements=[Worker.name], set_=known))
 
     def alive(self, within_s: float) -> list[str]:
         """Names of this host's workers that were seen so lately."""

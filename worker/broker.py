@@ -123,7 +123,7 @@ class TaskQueue:
             pool="threads",
             concurrency=workers,
             queues=[self._queues[Queue(name)].name for name in queues],
-            hostname=f"bladeatlas@{name}",
+            hostname=name,
             quiet=True,
             without_gossip=True,
             without_mingle=True,

@@ -68,17 +68,29 @@ class ConcurrencyLimit:
         self._stopped = stopped
         self._quiet_s = quiet_s
         self._last_message = time.monotonic()
+        self._waiting = 0
+        self._mutex = threading.Lock()
 
     def on_message(self, run: Callable[[], T | None]) -> T | None:
         """Run what a message named, as soon as another task may run; None when nothing ran."""
-        self._last_message = time.monotonic()
-        while not self._free.acquire(timeout=_TICK_S):
-            if self._stopped.is_set():
-                return None
+        self._note_message(1)
+        try:
+            while not self._free.acquire(timeout=_TICK_S):
+                if self._stopped.is_set():
+                    return None
+        finally:
+            self._note_message(-1)
         try:
             return run()
         finally:
+            # The next message is asked for by now: only from here on is its absence silence.
+            self._note_message(0)
             self._free.release()
+
+    def _note_message(self, waiting: int) -> None:
+        with self._mutex:
+            self._waiting += waiting
+            self._last_message = time.monotonic()
 
     def without_message(self, run_next: Callable[[float | None], bool]) -> None:
         """Run tasks for as long as there are some, another task may run and no message comes.
@@ -98,7 +110,9 @@ class ConcurrencyLimit:
                 self._free.release()
 
     def _is_quiet(self) -> bool:
-        return not self._stopped.is_set() and time.monotonic() - self._last_message >= self._quiet_s
+        with self._mutex:
+            silent_s = time.monotonic() - self._last_message
+            return not self._stopped.is_set() and not self._waiting and silent_s >= self._quiet_s
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from datetime import timedelta
 
 import pytest
 from sqlalchemy import update
+from sqlalchemy.exc import SQLAlchemyError
 
 from core.states import Queue
 from store.accounts import Accounts
@@ -165,6 +166,27 @@ def test_whoever_asks_by_itself_first_leaves_alone_what_was_just_announced(db: D
     assert lease is not None
     assert plan.release(lease)
     assert plan.lease("worker", unheard_s=60) is not None, "it was not announced since"
+
+
+def test_a_worker_may_report_itself_from_several_threads_at_once(db: Database) -> None:
+    start, failures = threading.Barrier(4), list[Exception]()
+
+    def report() -> None:
+        start.wait(10)
+        try:
+            for _ in range(3):
+                slots(db, 2)
+        except SQLAlchemyError as error:
+            failures.append(error)
+
+    threads = [threading.Thread(target=report) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(30)
+    assert failures == []
+    with db.read() as session:
+        assert [(row.name, row.slots) for row in session.query(Worker)] == [("worker", 2)]
 
 
 @pytest.mark.parametrize("announcers", [4])

@@ -71,6 +71,36 @@ def test_messages_and_own_looks_share_the_limit() -> None:
     assert len(work.ran) >= 2
 
 
+def test_a_message_that_waits_goes_before_the_next_own_look() -> None:
+    work = Work(3)
+    limit = ConcurrencyLimit(1, threading.Event(), quiet_s=0.0)
+    looking = threading.Thread(target=limit.without_message, args=(work.run_next,))
+    looking.start()
+    wait_for(lambda: work.running == 1)
+    message = threading.Thread(target=limit.on_message, args=(work.run_named,))
+    message.start()
+    time.sleep(0.2)
+    work.gate.set()
+    looking.join(10.0)
+    message.join(10.0)
+    assert work.ran == [0.0, "named"]
+
+
+def test_the_end_of_a_messages_task_is_no_silence_however_long_it_took() -> None:
+    work = Work(2)
+    limit = ConcurrencyLimit(1, threading.Event(), quiet_s=0.5)
+    message = threading.Thread(target=limit.on_message, args=(work.run_named,))
+    message.start()
+    time.sleep(0.8)
+    work.gate.set()
+    message.join(10.0)
+    limit.without_message(work.run_next)
+    assert work.ran == ["named"]
+    time.sleep(0.6)
+    limit.without_message(work.run_next)
+    assert work.ran == ["named", 0.5]
+
+
 def test_a_stopping_worker_starts_nothing() -> None:
     work, stopped = Work(2), threading.Event()
     limit = ConcurrencyLimit(1, stopped, quiet_s=0.0)

@@ -13,10 +13,9 @@ from enum import StrEnum
 from typing import Any
 
 from sqlalchemy import select
-from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
-from store.db import Database
+from store.db import Database, insert_into
 from store.graph import Graph
 from store.integration_models import EventCounter, InspectionEvent
 from store.leasing import metadata_of
@@ -112,8 +111,7 @@ def _write(session: Session, inspection: Inspection, kind: EventType, stage: str
 
 def _next_number(session: Session, owner: str) -> int:
     """The next number of an account; others who need one wait for the end of this transaction."""
-    insert = sqlite.insert if session.get_bind().dialect.name == "sqlite" else postgresql.insert
-    statement = insert(EventCounter).values(owner=owner, last=1)
+    statement = insert_into(session, EventCounter).values(owner=owner, last=1)
     statement = statement.on_conflict_do_update(
         index_elements=[EventCounter.owner], set_={"last": EventCounter.last + 1}
     )

@@ -8,11 +8,11 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from sqlalchemy import ColumnElement, CursorResult, Update, select, update
-from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
 from core.states import AttemptOutcome, TaskState
+from store.db import insert_into
 from store.integration_models import MetadataEntry
 from store.models import LEASABLE, Attempt, FurtherVideo, Inspection, Task
 from store.models import Result as ResultRow
@@ -165,8 +165,7 @@ def put_result(session: Session, result: Result, now: datetime) -> ResultRow:
         "peak_rss_bytes": result.peak_rss_bytes,
         "created_at": now,
     }
-    insert = sqlite.insert if session.get_bind().dialect.name == "sqlite" else postgresql.insert
-    statement = insert(ResultRow).values(fingerprint=result.fingerprint, **values)
+    statement = insert_into(session, ResultRow).values(fingerprint=result.fingerprint, **values)
     statement = statement.on_conflict_do_update(index_elements=[ResultRow.fingerprint], set_=values)
     session.execute(statement)
     return session.get_one(ResultRow, result.fingerprint, populate_existing=True)

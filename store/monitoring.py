@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from sqlalchemy import delete, func, select
-from sqlalchemy.dialects import postgresql, sqlite
 
 from core.states import InspectionState, TaskState
-from store.db import Database
+from store.db import Database, insert_into
 from store.models import ACTIVE_INSPECTION, Attempt, Inspection, Task, Upload, Worker
 
 SEEN_WITHIN = timedelta(seconds=60)
@@ -84,8 +83,9 @@ class WorkerRegistry:
         with self.db.write() as session:
             now = self.db.now(session)
             known = {"queues": list(queues), "slots": slots, "seen_at": now}
-            insert = sqlite.insert if self.db.is_sqlite else postgresql.insert
-            statement = insert(Worker).values(name=name, host=platform.node()[:128], started_at=now, **known)
+            statement = insert_into(session, Worker).values(
+                name=name, host=platform.node()[:128], started_at=now, **known
+            )
             # Threads of a worker that starts report it at the same moment.
             session.execute(statement.on_conflict_do_update(index_elements=[Worker.name], set_=known))
 

@@ -21,6 +21,7 @@ from api.finding import find_inspection
 from api.negotiation import Span, matches, wanted_span
 from api.problems import not_found, responses
 from api.routes.tables import not_ready
+from api.services import Services
 from api.state import state_of
 from store.files import ArtifactStore
 from store.publishing import ArtifactRows, ArtifactView
@@ -103,17 +104,25 @@ def fetch(
 ) -> Response:
     """The file; its strong `ETag` is its SHA-256, so a part that came before a cut is known to belong to the rest."""
     services = state_of(request).services
-    row = find_inspection(services, inspection_id, caller.owner)
-    # Found by its exact name in the table: whatever else a path may say, it names no file.
-    view = ArtifactRows(services.db).find(inspection_id, path) if "\0" not in path else None
-    if view is None:
-        raise not_ready(row, "file")
+    view = find_file(services, inspection_id, caller.owner, path)
     etag = f'"{view.sha256}"'
     headers = {"ETag": etag, "Accept-Ranges": "bytes", "Repr-Digest": _repr_digest(view.sha256)}
     if matches(if_none_match, etag):
         return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
     span = wanted_span(range, if_range, etag, view.size)
     return _stream(services.artifacts, view, span, headers, head=request.method == "HEAD")
+
+
+def find_file(services: Services, inspection_id: str, owner: str, path: str) -> ArtifactView:
+    """A published file of an inspection of this owner; otherwise the answer that says what is missing.
+
+    It is found by its exact name in the table: whatever else a path may say, it names no file.
+    """
+    row = find_inspection(services, inspection_id, owner)
+    view = ArtifactRows(services.db).find(inspection_id, path) if "\0" not in path else None
+    if view is None:
+        raise not_ready(row, "file")
+    return view
 
 
 def _stream(

@@ -9,16 +9,14 @@ from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import StreamingResponse
 
 from api.auth import Reader
-from api.finding import find_inspection
 from api.negotiation import Span, accepts_gzip, matches
 from api.problems import not_found, responses
-from api.routes.artifacts import stream_bytes
-from api.routes.tables import not_ready
+from api.routes.artifacts import find_file, stream_bytes
 from api.state import state_of
 from core.outputs import VIEWER
 from core.viewer.policy import POLICY
 from store.files import ArtifactStore
-from store.publishing import ArtifactRows, ArtifactView, compressed_key
+from store.publishing import ArtifactView, compressed_key
 
 router = APIRouter(prefix="/v1/inspections/{inspection_id}", tags=["results"])
 
@@ -76,11 +74,7 @@ def _file(
     request: Request, owner: str, inspection_id: str, path: str, known: str | None, encoding: str | None
 ) -> Response:
     services = state_of(request).services
-    row = find_inspection(services, inspection_id, owner)
-    # Found by its exact name in the table: whatever else a path may say, it names no file.
-    view = ArtifactRows(services.db).find(inspection_id, path) if "\0" not in path else None
-    if view is None:
-        raise not_ready(row, "file")
+    view = find_file(services, inspection_id, owner, path)
     store = services.artifacts
     key, etag, headers = view.key, f'"{view.sha256}"', _headers()
     packed = _packed(store, view) if accepts_gzip(encoding) else None
@@ -91,7 +85,7 @@ def _file(
     headers["ETag"] = etag
     if matches(known, etag):
         return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
-    if not store.exists(key):
+    if packed is None and not store.exists(key):  # a packed form was looked for above
         raise not_found("file")
     size = store.size(key) if packed is not None else view.size
     headers["Content-Length"] = str(size)

@@ -22,8 +22,6 @@ _MAX_NAME = 255
 _PATTERN = re.compile(r"%0?\d{0,2}d")
 _DIGITS = re.compile(r"(\d+)")
 _ZIP = b"PK\x03\x04"
-_EARLIEST = (1980, 1, 1, 0, 0, 0)
-"""The first date that a zip can hold."""
 _UNSEEN = ("__MACOSX",)
 """Folders that packers add."""
 
@@ -128,7 +126,8 @@ def pack_pictures(path: Path, target: Path) -> bool:
         return False
     with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
         for name in pictures.names:
-            archive.writestr(zipfile.ZipInfo(name, _EARLIEST), pictures.read(name))
+            # Without a date an entry has the first that a zip can hold.
+            archive.writestr(zipfile.ZipInfo(name), pictures.read(name))
     return True
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.json_files import read_json
+from core.outputs import ROW
 
 LEAST_COUNT, MOST_COUNT = 7, 180
 NOT_SEEN = 0.5
@@ -21,7 +22,7 @@ NOT_SEEN = 0.5
 def command(parsed: argparse.Namespace) -> int:
     """Write row.json and the column `blade` of a result, and say what was found."""
     # Loaded here: the row needs the ray caster, `--help` does not.
-    from core.row.published import ROW, write_row
+    from core.row.published import write_row
 
     folder: Path = parsed.result
     write_row(folder, told_count(parsed.set))

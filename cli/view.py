@@ -14,7 +14,7 @@ from urllib.parse import unquote, urlsplit
 
 from cli.terminal import say
 from core.errors import BadInput
-from core.outputs import SUMMARY, VIEWER_PAGE
+from core.outputs import SUMMARY, VIEWER_PAGE, is_of_page
 from core.viewer.policy import POLICY
 
 _HOST = "127.0.0.1"
@@ -127,6 +127,4 @@ def _is_of_a_page(path: str) -> bool:
     parts = path.strip("/").split("/")
     if any(not part or part.startswith(".") or "\\" in part or "\0" in part for part in parts):
         return False
-    if len(parts) > 3 and parts[0] == "models" and parts[1].isdecimal():
-        parts = parts[2:]
-    return len(parts) > 1 and parts[0] == "viewer" and not path.endswith("/")
+    return is_of_page(path.strip("/")) and not path.endswith("/")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from core.scene.case import REDUCERS
 from core.stage import Facts
@@ -101,6 +102,24 @@ OF_FURTHER_MODELS: tuple[Output, ...] = (
     *_OF_A_VIEWER,
 )
 """Published below ``models/N/`` for every further model that came to its end."""
+
+
+def model_folder(folder: Path, model: int) -> Path:
+    """Folder of the files of a model of a result: of the first model that of the result itself."""
+    return folder / "models" / str(model) if model else folder
+
+
+def model_numbers(folder: Path) -> list[int]:
+    """Numbers of the models of a result, from 0, rising."""
+    return [0, *sorted(int(path.name) for path in (folder / "models").glob("*") if path.name.isdecimal())]
+
+
+def is_of_page(path: str) -> bool:
+    """Whether a published path is that of a file of a page: below ``viewer/`` or ``models/N/viewer/``."""
+    parts = path.split("/")
+    if len(parts) > 3 and parts[0] == "models" and parts[1].isdecimal():
+        parts = parts[2:]
+    return len(parts) > 1 and parts[0] == VIEWER
 
 
 def evidence_name(defect: int) -> str:

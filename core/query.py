@@ -18,7 +18,7 @@ from core.errors import BadInput, StageFailed
 from core.io.sparse import open_model
 from core.mapping.scene import face_normals, oriented
 from core.mapping.surface import Surface
-from core.outputs import DEFECT_SURFACE, DEFECTS, FRAMES, SPARSE, SUMMARY
+from core.outputs import DEFECT_SURFACE, DEFECTS, FRAMES, SPARSE, SUMMARY, model_folder, model_numbers
 from core.report.csv_form import read_csv
 from core.scene.detection import Reason
 from core.scene.frame import Crop
@@ -98,7 +98,7 @@ class Result:
 
     def __init__(self, folder: Path, model: int = 0) -> None:
         """Open a folder; `BadInput` says which of its files or models is missing."""
-        root = folder if model == 0 else folder / "models" / str(model)
+        root = model_folder(folder, model)
         if model < 0 or (model and not root.is_dir()):
             raise BadInput(f"there is no model {model}; there are {_models(folder)}", where="--model")
         for name in (folder / FRAMES, folder / SUMMARY, root / SPARSE, (root / DEFECT_SURFACE).parent):
@@ -255,8 +255,7 @@ def defect_place(folder: Path, defect: int, model: int | None = None) -> tuple[F
 
 
 def _models(folder: Path) -> str:
-    further = sorted(int(path.name) for path in (folder / "models").glob("*") if path.name.isdecimal())
-    return ", ".join(str(number) for number in (0, *further))
+    return ", ".join(str(number) for number in model_numbers(folder))
 
 
 def _file(path: str) -> str:

@@ -15,7 +15,6 @@ from typing import Any
 from sqlalchemy import ColumnElement, delete, or_, select, update
 from sqlalchemy.orm import Session
 
-from core.outputs import VIEWER
 from store.account_models import Account
 from store.db import Database
 from store.events import tell_change
@@ -48,13 +47,6 @@ def media_type(path: str) -> str:
 
 _COMPRESSED = ".gz"
 _COMPRESSIBLE = (".css", ".glb", ".html", ".js", ".json")
-
-
-def is_of_page(path: str) -> bool:
-    """Whether a published file is of a page: below ``viewer/`` or ``models/N/viewer/``."""
-    parts = PurePosixPath(path).parts
-    below = parts[2:] if parts[:1] == ("models",) else parts
-    return below[:1] == (VIEWER,)
 
 
 def compressed_key(key: str) -> str | None:

@@ -21,7 +21,7 @@ from typing import Any
 
 from core.errors import Cancelled
 from core.flags import Verdict
-from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case
+from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case, is_of_page
 from core.report.build import Report, build_report, write_tables
 from core.report.load import load_tables, served_pieces
 from core.report.record import RunRecord, TaskRecord
@@ -36,7 +36,7 @@ from store.files import ArtifactStore, Stored
 from store.inspections import Inspections
 from store.json_log import logger
 from store.models import OVER_TASK
-from store.publishing import Publishing, Ticket, compressed_key, is_of_page, uncompressed_key
+from store.publishing import Publishing, Ticket, compressed_key, uncompressed_key
 from store.records import InspectionView, TaskView
 from store.tables import defect_rows
 from worker.periodic import Periodic

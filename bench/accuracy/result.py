@@ -13,6 +13,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.errors import BadInput
+from core.outputs import model_folder, model_numbers
 from core.report.csv_form import read_csv
 from core.surface.ply import Mesh, read_mesh
 
@@ -56,10 +57,8 @@ def load_result(folder: Path) -> Result:
     """Read a result folder; missing models and mapping files are an outcome, a missing `frames.csv` is `BadInput`."""
     sources = source_indices_by_name(folder / "frames.csv")
     models: dict[int, ResultModel] = {}
-    roots = {0: folder}
-    if (folder / "models").is_dir():
-        roots.update({int(path.name): path for path in (folder / "models").iterdir() if path.name.isdigit()})
-    for number, root in sorted(roots.items()):
+    for number in model_numbers(folder):
+        root = model_folder(folder, number)
         if (root / "sparse").is_dir():
             models[number] = _load_model(number, root, sources)
     return Result(models, _rows(folder / "mapping/detections.json"), _rows(folder / "mapping/defects.json"))

@@ -14,7 +14,7 @@ from core.errors import BadInput
 from core.io.sparse import open_model
 from core.json_files import JsonObject, write_json
 from core.mapping.scene import oriented
-from core.outputs import DEFECTS, SPARSE, SUMMARY, SURFACE
+from core.outputs import DEFECTS, DETECTIONS, ROW, SPARSE, SUMMARY, SURFACE, model_folder, model_numbers
 from core.report.tables import write_csv
 from core.row.estimate import estimate_row
 from core.row.model import BladeRow, NoRow, UnknownRow
@@ -22,8 +22,6 @@ from core.row.places import on_row
 from core.scene.views import views_of
 from core.surface.ply import read_mesh
 
-ROW = "row.json"
-DETECTIONS = "mapping/detections"
 SEED = 0
 
 Rows = list[JsonObject]
@@ -47,8 +45,8 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
     """
     if not (folder / SUMMARY).is_file():
         raise BadInput(f"{folder.name} is no result: it has no {SUMMARY}", where=str(folder))
-    found = {number: row_of(own, count) for number, own in _models(folder).items()}
-    detections = _read((folder / DETECTIONS).with_suffix(".json"))
+    found = {number: row_of(model_folder(folder, number), count) for number in model_numbers(folder)}
+    detections = _read(folder / DETECTIONS)
     for one in detections:
         one["blade"] = _blade(found, one.get("model"), (one["x"], one["y"], one["z"]))
     records = _read(folder / DEFECTS)
@@ -62,15 +60,15 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
             record["blade"] = blade_name(place.blade, model)
             findings[model].append({"defect": record["id"], **place.to_dict()})
     if detections:
-        _replace((folder / DETECTIONS).with_suffix(".json"), lambda path: write_json(path, detections))
+        _replace(folder / DETECTIONS, lambda path: write_json(path, detections))
         _replace(
             (folder / DETECTIONS).with_suffix(".csv"), lambda path: write_csv(path, list(detections[0]), detections)
         )
     if records:
         _replace(folder / DEFECTS, lambda path: write_json(path, records))
-    for number, own in sorted(_models(folder).items(), reverse=True):
+    for number in sorted(found, reverse=True):
         document = {**found[number].to_dict(), "findings": findings[number]}
-        _replace(own / ROW, lambda path, value=document: write_json(path, value))  # type: ignore[misc]
+        _replace(model_folder(folder, number) / ROW, lambda path, value=document: write_json(path, value))  # type: ignore[misc]
     return found[0]
 
 
@@ -95,11 +93,6 @@ def _blade(found: Mapping[int, BladeRow | NoRow], model: int | None, place: Sequ
     if len(known) < 3 or not isinstance(row, BladeRow):
         return None
     return blade_name(on_row(row, known, None, None).blade, int(model or 0))
-
-
-def _models(folder: Path) -> dict[int, Path]:
-    further = {int(one.name): one for one in folder.glob("models/*") if one.name.isdigit()}
-    return {0: folder, **further}
 
 
 def _read(path: Path) -> Rows:

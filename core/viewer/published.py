@@ -28,6 +28,8 @@ from core.outputs import (
     SURFACE_GLB,
     TIMELINE,
     VIEWER,
+    model_folder,
+    model_numbers,
 )
 from core.report.build import Report
 from core.report.csv_form import read_csv
@@ -62,7 +64,7 @@ def build_pages(folder: Path, videos: Sequence[Path] = ()) -> list[str]:
     """
     report = _report(folder)
     crop = _crop(report)
-    models = _models(folder) if report.verdict != Verdict.REFUSED else [0]
+    models = model_numbers(folder) if report.verdict != Verdict.REFUSED else [0]
     said: list[str] = []
     with tempfile.TemporaryDirectory(prefix=".viewer-", dir=folder) as temporary:
         work = Path(temporary)
@@ -83,29 +85,19 @@ def build_pages(folder: Path, videos: Sequence[Path] = ()) -> list[str]:
                 pictures,
                 model,
                 tuple(models),
-                _object(_root(folder, model) / ROW),
-                _sigmas(_root(folder, model) / CONFIDENCE),
+                _object(model_folder(folder, model) / ROW),
+                _sigmas(model_folder(folder, model) / CONFIDENCE),
                 why,
             )
             write_page(made, source, made / SURFACE_GLB)
             (made / SCENE_FILE).unlink(missing_ok=True)
-            target = _root(folder, model) / VIEWER
+            target = model_folder(folder, model) / VIEWER
             shutil.rmtree(target, ignore_errors=True)
             made.rename(target)
     return said
 
 
 _NO_PICTURES = "this result keeps no clean pictures of its frames: name its video with --video to have them"
-
-
-def _root(folder: Path, model: int) -> Path:
-    """Folder of the files of a model."""
-    return folder / "models" / str(model) if model else folder
-
-
-def _models(folder: Path) -> list[int]:
-    further = sorted(int(path.name) for path in (folder / "models").glob("*") if path.name.isdecimal())
-    return [0, *further]
 
 
 def _report(folder: Path) -> Report:
@@ -142,7 +134,7 @@ def _scene(
     folder: Path, model: int, report: Report, crop: Crop | None, made: Path, said: list[str]
 ) -> ViewerScene | None:
     """The surface and poses of a model, written below `made`; None when the result lacks what they are made of."""
-    root = _root(folder, model)
+    root = model_folder(folder, model)
     if report.verdict == Verdict.REFUSED:
         return None
     missing = [name for name in (SPARSE, SURFACE, DEFECT_SURFACE) if not (root / name).exists()]

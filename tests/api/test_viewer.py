@@ -12,8 +12,9 @@ import pytest
 from fastapi.testclient import TestClient
 
 from api.negotiation import accepts_gzip
+from core.outputs import is_of_page
 from core.viewer.policy import POLICY
-from store.publishing import compressed_key, is_of_page, media_type, uncompressed_key
+from store.publishing import compressed_key, media_type, uncompressed_key
 from tests.api.conftest import Backend
 
 SCRIPT = b"window.BLADEATLAS = {};\n" * 50

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 
+from core.surface.glb import vertex_normals
 from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
@@ -41,13 +42,7 @@ class SurfacePatch:
     @cached_property
     def normals(self) -> F64:
         """(n, 3) unit normals by the area of the faces around."""
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        face = np.cross(b - a, c - a)
-        total = np.zeros_like(self.vertices)
-        for k in range(3):
-            np.add.at(total, self.faces[:, k], face)
-        unit: F64 = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-300)
-        return unit
+        return vertex_normals(Mesh(self.vertices, self.faces.astype(np.int32)))
 
     @cached_property
     def areas(self) -> F64:

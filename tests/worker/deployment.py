@@ -7,9 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,6 +22,7 @@ from store.models import Artifact, Attempt, Inspection
 from store.records import InputFiles
 from tests.signals import heed_interrupts
 from tests.worker.fake_stages import GRAPH, SMALL, journal
+from tests.worker.waiting import wait_for
 
 ROOT = Path(__file__).resolve().parents[2]
 FAST = {
@@ -132,10 +131,3 @@ class Deployment:
                 process.send_signal(signal.SIGCONT)
                 process.kill()
             process.wait()
-
-
-def wait_for(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen in time"
-        time.sleep(0.05)

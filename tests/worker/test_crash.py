@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
@@ -24,6 +23,7 @@ from store.plan import Plan
 from tests.signals import heed_interrupts
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, journal
+from tests.worker.waiting import wait_for
 
 pytestmark = pytest.mark.deployment
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,13 +34,6 @@ KILLS = int(os.environ.get("BLADEATLAS_TEST_KILLS", "4"))
 def start(place: Workplace) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "tests.worker.run_process", str(place.video), str(place.out)]
     return subprocess.Popen(command, cwd=ROOT, preexec_fn=heed_interrupts)
-
-
-def wait_for(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen in time"
-        time.sleep(0.01)
 
 
 def pids(place: Workplace, what: str) -> list[int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from store.records import InputFiles, Lease
 from tests.databases import BOTH, database
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, SMALL
+from tests.worker.waiting import wait_for
 from worker.logs import TaskLogs
 from worker.loop import LocalRunners
 from worker.results import ResultFolders
@@ -84,13 +85,6 @@ class Server:
 def server(request: pytest.FixtureRequest, place: Workplace, tmp_path: Path) -> Iterator[Server]:
     with database(request.param, tmp_path) as db:
         yield Server(place, db)
-
-
-def wait_for(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen in time"
-        time.sleep(0.02)
 
 
 def test_inspections_of_the_same_input_share_their_results(server: Server) -> None:

@@ -152,7 +152,7 @@ STAGES: dict[str, StageSpec] = {
             *_options("mapping", "method", "radius_fraction", "sigma_fraction"),
             "timeline",
             "scale",
-            version=8,
+            version=9,
             weight=0.5,
         ),
         _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),

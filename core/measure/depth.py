@@ -24,6 +24,12 @@ STANDS_OUT = 3.0
 """A depth counts above this many times the roughness."""
 SMOOTH = 0.08
 """Standard deviation of a depth over the depth: an aerofoil is no quadric, and the deepest spot has a size."""
+GLINT = 95.0
+"""Percentile of the brightness of the ring that the bottom of a depth does not exceed. The light of a borescope sits at
+its tip, and what shiny metal reflects of it lies before or behind the metal by half the radius of its bend: the
+reflection on a bump is matched across the views like a mark on the bottom of a hollow."""
+BUMP = 0.5
+"""A region whose highest spot rises by more than this share of its depth is neither a hollow nor a bump."""
 _MAD = 1.4826
 
 
@@ -35,8 +41,11 @@ class Depth:
     sigma: float
 
 
-def depth_of(region: Region, level: F64, smallest: float) -> Depth | None:
-    """The depth of a region; None where it does not stand out from the roughness or the ring around is not whole.
+def depth_of(region: Region, level: F64, smallest: float, brightness: F64 | None = None) -> Depth | None:
+    """The depth of a region, None where it is not known.
+
+    It is not where it does not stand out from the roughness, where the ring around is not whole, where the region also
+    rises, and where its bottom is brighter than what is around: that is a reflection and not the surface.
 
     The smooth surface is a quadric height field over the tangent plane, z = a + b x + c y + d x^2 + e x y + f y^2,
     fitted to the ring by robust least squares.
@@ -45,6 +54,7 @@ def depth_of(region: Region, level: F64, smallest: float) -> Depth | None:
         region: the finding.
         level: (n,) of all vertices of its patch, scene units; NaN where no view sees one.
         smallest: roughness that a surface of this spacing has at least, scene units.
+        brightness: (n,) of all vertices of its patch, in any unit; None where the surface has no colours.
     """
     patch, length = region.patch, region.straight.length
     local = (patch.vertices - region.middle) @ _frame(region).T
@@ -56,9 +66,15 @@ def depth_of(region: Region, level: F64, smallest: float) -> Depth | None:
     fit = _fit(local[ring])
     residual = local[:, 2] - _terms(local) @ fit
     roughness = max(_MAD * float(np.median(np.abs(residual[ring]))), smallest)
-    lowest = np.sort(residual[inside])
-    value = -float(np.median(lowest[: max(3, round(CORE * len(lowest)))]))
-    return Depth(value, float(np.hypot(roughness, SMOOTH * value))) if value > STANDS_OUT * roughness else None
+    ordered = np.flatnonzero(inside)[np.argsort(residual[inside], kind="stable")]
+    few = max(3, round(CORE * len(ordered)))
+    bottom, top = ordered[:few], ordered[-few:]
+    value = -float(np.median(residual[bottom]))
+    if value <= STANDS_OUT * roughness or float(np.median(residual[top])) > BUMP * value:
+        return None
+    if brightness is not None and np.median(brightness[bottom]) > np.percentile(brightness[ring], GLINT):
+        return None
+    return Depth(value, float(np.hypot(roughness, SMOOTH * value)))
 
 
 def _frame(region: Region) -> F64:

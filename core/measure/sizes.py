@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from core.geometry.boxes import bounding_box, box_iou
 from core.mapping.observations import Observation
@@ -19,6 +20,7 @@ from core.measure.patch import SurfacePatch, cut_patch
 from core.measure.shape import Region, region_of, straight_extents
 from core.scene.detection import Detection
 from core.scene.size import Measure, Size, SizeFrom, Unmeasured, together
+from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
 
@@ -134,12 +136,22 @@ def _measure(
     best = next(region for region in regions if region is not None)
     size, bends = _joined(joined, best, seen, scene.spacing)
     if joined is not None:
-        depth = depth_of(joined, level, 0.5 * scene.spacing)
+        depth = depth_of(joined, level, 0.5 * scene.spacing, _brightness(patch, scene.mesh))
         if depth is not None:
             pose = depth.value * _common_depth([one.view for one in seen])
             size = replace(size, depth=Measure(depth.value, 0.0, pose, depth.sigma))
     size = replace(size, size_from=known)
     return size, {one.view.detection: _alone(one, bends, scene.spacing) for one in seen}
+
+
+def _brightness(patch: SurfacePatch, mesh: Mesh) -> F64 | None:
+    """(n,) grey value at the vertices of a patch, that of the nearest vertex of the mesh; None without colours."""
+    if mesh.colors is None:
+        return None
+    reach = float(np.linalg.norm(patch.vertices - patch.place, axis=1).max())
+    near = np.flatnonzero(np.linalg.norm(mesh.vertices - patch.place, axis=1) <= reach * (1.0 + 1e-9))
+    nearest = near[cKDTree(mesh.vertices[near]).query(patch.vertices)[1]]
+    return np.asarray(mesh.colors[nearest].mean(axis=1), np.float64)
 
 
 def _outlined(

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.mapping.scene import Scene
+from core.mapping.scene import Scene, face_normals
+from core.mapping.surface import Surface
 from core.mapping.surface_rules import place_on_surface
 from core.measure.depth import depth_of
 from core.measure.outline import ellipse_in, median_level, signed_distance
@@ -83,6 +84,29 @@ def test_the_depth_of_a_dish_is_found_where_it_stands_out(amount: float, expecte
         assert found.value == pytest.approx(expected, rel=0.1)
 
 
+def test_a_bottom_that_shines_is_a_reflection_and_no_depth() -> None:
+    """The light at the tip, reflected by a bump, is matched like a mark on the bottom of a hollow."""
+    patch = patch_of(lambda x, y: -0.1 * np.maximum(0.0, 1.0 - (x**2 + y**2) / 0.16) ** 2)
+    away = np.linalg.norm(patch.vertices[:, :2], axis=1)
+    region = region_of(patch, 0.4 - away)
+    assert region is not None
+    texture = 80.0 + 20.0 * np.sin(40.0 * patch.vertices[:, 0])
+    for brightness, told in (
+        (texture, True),
+        (texture - 40.0 * (away < 0.1), True),
+        (texture + 60.0 * (away < 0.1), False),
+    ):
+        assert (depth_of(region, 0.4 - away, 0.004, brightness) is not None) is told
+
+
+def test_a_region_that_rises_as_much_as_it_falls_has_no_depth() -> None:
+    patch = patch_of(lambda x, y: -0.5 * x * np.maximum(0.0, 1.0 - (x**2 + y**2) / 0.16) ** 2)
+    level = 0.4 - np.linalg.norm(patch.vertices[:, :2], axis=1)
+    region = region_of(patch, level)
+    assert region is not None
+    assert depth_of(region, level, 0.004) is None
+
+
 def test_without_a_whole_ring_no_depth_is_told() -> None:
     patch = patch_of(lambda x, y: -0.1 * np.maximum(0.0, 1.0 - (x**2 + y**2) / 0.16) ** 2)
     level = 0.4 - np.linalg.norm(patch.vertices[:, :2], axis=1)
@@ -143,6 +167,27 @@ def test_a_disc_has_its_diameter_by_masks_and_by_boxes(masks: bool) -> None:
     assert size.area.value == pytest.approx(np.pi * 0.09, rel=0.08)
     assert abs(size.length.value - 0.6) < 2 * size.length.sigma
     assert single.keys() == set(FRAMES)
+
+
+@pytest.mark.parametrize("shines", [False, True])
+def test_the_depth_of_a_finding_minds_the_colours_of_the_surface(shines: bool) -> None:
+    found = [disc_detection(frame, 0.4, masks=True) for frame in FRAMES]
+    where = scene(FRAMES, found)
+    away = np.linalg.norm(where.mesh.vertices - np.array(PLACE), axis=1)
+    towards = np.sign(where.views.centers[0][2] - NEAR)
+    vertices = where.mesh.vertices.copy()
+    vertices[:, 2] -= towards * 0.15 * np.maximum(0.0, 1.0 - (away / 0.4) ** 2) ** 2
+    colors = np.full((len(vertices), 3), 90, np.uint8)
+    colors[away < 0.15] = 250 if shines else 60
+    mesh = replace(where.mesh, vertices=vertices, colors=colors)
+    where = replace(where, mesh=mesh, surface=Surface(mesh.vertices, mesh.faces), face_normals=face_normals(mesh))
+    size, _ = measured(found, where)
+    assert size.length is not None
+    if shines:
+        assert size.depth is None
+    else:
+        assert size.depth is not None
+        assert size.depth.value == pytest.approx(0.15, rel=0.25)
 
 
 def test_masks_count_before_boxes_and_more_views_make_it_surer() -> None:

@@ -94,7 +94,7 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec("camera", *_LENS, version=2, weight=0.1),
         _spec(
-            "matches", *_MATCHER, "matching.window", version=3, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
+            "matches", *_MATCHER, "matching.window", version=4, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
         _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),

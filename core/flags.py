@@ -54,6 +54,7 @@ FLAG_CODES: Mapping[str, str] = {
     "no_parallax": "the views hardly differ in place (static or only turning camera): no depth can be known",
     "bent_model": "the model's rotations disagree with those measured between pairs of images",
     "parts_after_veto": "every whole model was wrong; the result is a part of one, between the places that did not fit",
+    "perspective_after_veto": "every model of a fisheye lens was wrong; the result is that of a perspective lens",
     "weak_join": "the model hangs together by few moving points at one place; its parts may not fit each other",
     "not_static": "typical pairs of images do not fit the model: the scene bends, or the model is wrong",
     "two_motions": "many pairs of images show a motion that is not the model's: something moves on its own",

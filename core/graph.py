@@ -8,14 +8,15 @@ same call with the same facts gives the same list, so a plan can be rebuilt afte
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from core.geometry.lens import LensModel
 from core.scene.case import CaseKind
 from core.settings import Settings
 from core.stage import Facts
 from core.states import Queue
-from core.task_key import chunk_key, key_of, stage_of
+from core.task_key import chunk_key, key_of, part_of, stage_of
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 from core.windows import Window, coarse_windows, refined_windows
 
@@ -56,6 +57,8 @@ _MATCHER = (
     "seed",
 )
 
+_LENS = _options("camera", "model", "params", "size_px", "fov_deg", "focal", "principal_point")
+
 STAGES: dict[str, StageSpec] = {
     spec.name: spec
     for spec in (
@@ -89,14 +92,9 @@ STAGES: dict[str, StageSpec] = {
             fan_out=True,
             weight=7,
         ),
+        _spec("camera", *_LENS, version=2, weight=0.1),
         _spec(
-            "camera",
-            *_options("camera", "model", "params", "size_px", "fov_deg", "focal", "principal_point"),
-            version=2,
-            weight=0.1,
-        ),
-        _spec(
-            "matches", *_MATCHER, "matching.window", version=3, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
+            "matches", *_MATCHER, "matching.window", version=4, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
         _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
         _spec("graph", weight=0.3),
@@ -106,7 +104,10 @@ STAGES: dict[str, StageSpec] = {
         _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.1),
         _spec("prune", weight=0.1),
         _spec("section", "mapper", "seed", fan_out=True, weight=0.5),
-        _spec("reduce_parts", "model.prefer_verified", weight=0.1),
+        _spec("reduce_parts", "model.prefer_verified", version=2, weight=0.1),
+        _spec("reverify", *_LENS, "verification", "seed", weight=0.3),
+        _spec("perspective", "mapper", "seed", weight=0.5),
+        _spec("reduce_perspective", weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
         _spec(
             "extend",
@@ -165,6 +166,12 @@ ALL_VIEWS = 1_000_000
 """End of the one chunk of a further model, whose number of views the plan does not know yet."""
 
 
+PERSPECTIVE = LensModel.SIMPLE_RADIAL
+"""The perspective lens that is tried after a veto: one radial term, because little may be there to settle it."""
+BY_A_WRONG_LENS = frozenset({"bent_model", "not_static", "two_motions"})
+"""Findings that a lens of the wrong kind leads to; without parallax or a join another lens finds none either."""
+
+
 @dataclass(frozen=True)
 class TaskSpec:
     """One task of the plan. `key` is unique in a run; `depends` lists keys."""
@@ -186,9 +193,9 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
 
     Args:
         settings: of the run.
-        facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``reduce_coarse``
-            {best, start, end}, ``reduce_refine`` {vetoed}, ``prune`` {parts}, ``undistort`` {n_views}, ``pieces``
-            {n_pieces}.
+        facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``reduce_coarse`` {best, start,
+            end}, ``reduce_refine`` {vetoed; codes, start, end}, ``prune`` {parts}, ``reduce_parts`` {best},
+            ``undistort`` {n_views}, ``pieces`` {n_pieces}.
     """
     tasks = [
         TaskSpec("probe"),
@@ -198,13 +205,14 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
     if "frames" not in facts:
         return tasks
     n_frames, n_search = int(facts["frames"]["n_frames"]), int(facts["frames"]["n_search"])
-    tasks += _front_end(settings, n_frames)
+    front_end = _front_end(settings, n_frames)
+    tasks += front_end
     coarse = coarse_windows(n_search, settings.windows)
     tasks += [_case(window, ("graph",)) for window in coarse]
     tasks.append(TaskSpec("reduce_coarse", tuple(_case_key(window) for window in coarse)))
     if "reduce_coarse" not in facts:
         return tasks
-    return tasks + _from_search_on(settings, facts, n_search)
+    return tasks + _from_search_on(settings, facts, front_end)
 
 
 def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
@@ -251,9 +259,9 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     return tasks
 
 
-def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: int) -> list[TaskSpec]:
+def _from_search_on(settings: Settings, facts: Mapping[str, Facts], front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
     """Refinement, final model, dense surface, mapping."""
-    best = facts["reduce_coarse"]
+    n_search, best = int(facts["frames"]["n_search"]), facts["reduce_coarse"]
     refined = refined_windows((int(best["start"]), int(best["end"])), n_search, settings.windows, str(best["best"]))
     tasks = [_case(window, ("graph", "reduce_coarse")) for window in refined]
     coarse_key = key_of("coarse", part=str(best["best"]))
@@ -267,7 +275,13 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
         tasks.append(TaskSpec("prune", ("frames", "graph", "reduce_refine")))
         if "prune" not in facts:
             return tasks
-        tasks += _parts(facts["prune"]["parts"])
+        perspective = _perspective(settings, facts["reduce_refine"], front_end)
+        tasks += _parts(facts["prune"]["parts"], bool(perspective))
+        if perspective and "reduce_parts" not in facts:
+            return tasks
+        if perspective and not facts["reduce_parts"]["best"]:
+            graph, reducer = "reverify", "reduce_perspective"
+            tasks += perspective
     tasks.append(TaskSpec("confirm", ("frames", graph, reducer)))
     tasks.append(TaskSpec("extend", ("frames", "camera", graph, "confirm")))
     if settings.model.further:
@@ -278,11 +292,29 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], n_search: in
     return tasks + _dense_and_mapping(settings, facts, graph)
 
 
-def _parts(intervals: Sequence[Sequence[int]]) -> list[TaskSpec]:
-    """The parts left of a vetoed model, each mapped alone, and the choice among them."""
+def _parts(intervals: Sequence[Sequence[int]], another_lens: bool) -> list[TaskSpec]:
+    """The parts left of a vetoed model, each mapped alone, and the choice; `another_lens` follows where none passes."""
     windows = [Window(CaseKind.SECTION, i, int(start), int(end)) for i, (start, end) in enumerate(intervals)]
     cases = [_case(window, ("prune",)) for window in windows]
-    return [*cases, TaskSpec("reduce_parts", ("annotations", "frames", "reduce_refine", *(one.key for one in cases)))]
+    needs = ("annotations", "frames", "reduce_refine", *(one.key for one in cases))
+    return [*cases, TaskSpec("reduce_parts", needs, {"another_lens": another_lens})]
+
+
+def _perspective(settings: Settings, vetoed: Facts, front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
+    """The lens sought anew as a perspective one, the graph verified by it, and the best vetoed window mapped so.
+
+    None where somebody said what the lens is, or where what is wrong is not the lens's doing.
+    """
+    starts = [task for task in front_end if task.stage == "focal"]
+    told = settings.camera.model != LensModel.OPENCV_FISHEYE or "camera.model" in settings.overrides or not starts
+    if told or BY_A_WRONG_LENS.isdisjoint(vetoed["codes"].split(", ")):
+        return []
+    model = {"model": str(PERSPECTIVE)}
+    keys = [key_of("focal", part=f"{PERSPECTIVE}-{part_of(start.key)}") for start in starts]
+    starts = [replace(one, key=key, args={**one.args, **model}) for one, key in zip(starts, keys, strict=True)]
+    case = _case(Window(CaseKind.PERSPECTIVE, 0, int(vetoed["start"]), int(vetoed["end"])), ("reverify",))
+    choice = TaskSpec("reduce_perspective", ("reduce_refine", "reduce_parts", case.key))
+    return [*starts, TaskSpec("reverify", ("frames", "graph", "reduce_parts", *keys), model), case, choice]
 
 
 def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: str) -> list[TaskSpec]:

@@ -17,11 +17,12 @@ from bench.service.deployment import serving
 from bench.service.overhead import attempts, covered, submitted
 from bench.speed.timing import Row, Table
 from core.errors import StageFailed
+from core.scene.case import CaseKind
 from core.states import AttemptOutcome
 from store.db import Database, open_sqlite
 from store.models import Attempt
 
-SEARCH = ("coarse", "refine")
+SEARCH = tuple(CaseKind)
 SEARCH_LIMIT_S = 900.0
 MANY_WINDOWS = {
     "camera.fov_deg": 85.0,

@@ -23,26 +23,51 @@ GIVE_UP_AFTER = 2
 """Pairs in vain after which LightGlue is not tried on a frame that nothing has matched yet."""
 
 
-class Patience:
-    """Which frames are worth LightGlue, by what came of it so far: a black frame would be tried with all neighbours.
+JUMP_AFTER = 3
+"""Pairs across a place of the sequence, tried in vain on frames that others match, after which LightGlue is not tried
+across it: the nearest of all and the two next to it."""
 
-    Nearest pairs should come first: where they fail, farther ones do not succeed.
+
+class Patience:
+    """Which pairs are worth LightGlue, by what came of it so far.
+
+    A black frame would be tried with all its neighbours, and a jump of the picture with all pairs across it. Nearest
+    pairs should come first: where they fail, farther ones do not succeed.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, n_search: int = 0) -> None:
+        """Take how many frames, from the first on, are a sequence that pairs may be nearest in; 0 for none."""
+        self._n_search = n_search
         self._in_vain: Counter[int] = Counter()
+        self._failed: list[tuple[int, int]] = []
         self._matched: set[int] = set()
+        self._joined: set[int] = set()
+        """Frames k such that a strong pair joins k or one before it with one after it."""
 
     def has_run_out(self, pair: tuple[int, int]) -> bool:
-        """Whether one of the frames has been tried often enough."""
-        return any(frame not in self._matched and self._in_vain[frame] >= GIVE_UP_AFTER for frame in pair)
+        """Whether one of the frames, or a place of the sequence between them, has been tried often enough."""
+        if any(frame not in self._matched and self._in_vain[frame] >= GIVE_UP_AFTER for frame in pair):
+            return True
+        first, last = pair
+        return last < self._n_search and any(self._is_jump(cut) for cut in range(first, last))
 
     def note(self, pair: tuple[int, int], outcome: MatchedPair) -> None:
         """Take in what a pair came to."""
         if len(outcome.geometry.inliers) >= STRONG_INLIERS:
             self._matched.update(pair)
+            if pair[1] < self._n_search:
+                self._joined.update(range(*pair))
         elif outcome.tried_lightglue:
             self._in_vain.update(pair)
+            if pair[1] < self._n_search:
+                self._failed.append(pair)
+
+    def _is_jump(self, cut: int) -> bool:
+        """Whether nothing reaches over a place, often enough tried on frames that others match: not on black ones."""
+        if cut in self._joined:
+            return False
+        across = [pair for pair in self._failed if pair[0] <= cut < pair[1] and self._matched.issuperset(pair)]
+        return len(across) >= JUMP_AFTER
 
 
 class PairMatcher:

@@ -32,11 +32,24 @@ def collect_flags(record: RunRecord) -> list[Flag]:
         flags.append(still)
     for task in record.tasks:
         piece = piece_of(task.key)
-        for row in [*task.facts.get("flags", ()), *_checks_that_count(record, task)]:
+        for row in [*_flags_that_count(record, task), *_checks_that_count(record, task)]:
             flag = Flag.from_dict(row)
             flags.append(replace(flag, where=f"model {piece}, {flag.where}") if piece else flag)
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
     return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
+
+
+def _start_of_lens(record: RunRecord) -> str:
+    """The task whose lens the model started from: another one where the search ended with a perspective lens."""
+    return "reverify" if record.facts("reduce_perspective") else "camera"
+
+
+def _flags_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFields]:
+    """Of the lenses that were sought, the flags of the one that the model started from."""
+    if task.key in ("camera", "reverify") and task.key != _start_of_lens(record):
+        return ()
+    flags: Sequence[FlagFields] = task.facts.get("flags", ())
+    return flags
 
 
 def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFields]:
@@ -184,7 +197,7 @@ def _registration(record: RunRecord) -> dict[str, object]:
 
 def _lens(record: RunRecord) -> dict[str, object]:
     """The lens of model 0, on the crop, where it started, and whether it was held there."""
-    start, final = record.facts("camera"), record.facts("extend")
+    start, final = record.facts(_start_of_lens(record)), record.facts("extend")
     return {
         "model": final.get("lens_model", start.get("model")),
         "params": final.get("lens_params"),

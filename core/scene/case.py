@@ -15,10 +15,15 @@ class CaseKind(StrEnum):
     REFINE = "refine"
     SECTION = "section"
     """Of the frames between places that a check found wrong, after every other case was vetoed."""
+    PERSPECTIVE = "perspective"
+    """Of a perspective lens, after every case of the fisheye lens was vetoed, the parts too."""
 
 
-REDUCERS = ("reduce_parts", "reduce_refine", "reduce_coarse")
+REDUCERS = ("reduce_perspective", "reduce_parts", "reduce_refine", "reduce_coarse")
 """Stages that choose among the cases, the one that has the last word first."""
+
+GRAPHS = ("reverify", "prune", "graph")
+"""Stages that write a view graph; what follows reads the first of them that is in its plan."""
 
 
 class CaseStatus(StrEnum):
@@ -56,7 +61,7 @@ class CaseRow:
     name: str
     """Name of the case: its segment, first and last frame."""
     kind: CaseKind
-    """`coarse`, `refine` or `section`."""
+    """`coarse`, `refine`, `section` or `perspective`."""
     start: int
     """First frame of its window."""
     end: int

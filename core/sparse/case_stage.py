@@ -8,7 +8,7 @@ import pycolmap
 from core.checks.model import check_model
 from core.flags import Flag, Severity, worst
 from core.io.sparse import has_model, read_model, write_model
-from core.scene.case import CaseKind, CaseStatus
+from core.scene.case import GRAPHS, CaseKind, CaseStatus
 from core.sparse.cases import Case, CaseResult, run_case
 from core.stage import Facts, StageResult, StageTask
 from core.task_key import key_of
@@ -18,7 +18,7 @@ from core.viewgraph import read_graph
 def run_case_task(task: StageTask, kind: CaseKind) -> StageResult:
     """Map the window of a task; no model is an outcome, not an error."""
     case = Case(
-        task.input("prune", "graph"),
+        task.input(*GRAPHS),
         int(task.args["start"]),
         int(task.args["end"]),
         task.settings.mapper,

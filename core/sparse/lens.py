@@ -9,6 +9,7 @@ import pycolmap
 
 from core.flags import Flag, FlagFields, Severity
 from core.geometry.lens import REDUCED, Lens, LensModel, make_lens, scale_to
+from core.settings import Settings
 from core.settings.groups import CameraSettings
 from core.stage import Facts
 
@@ -51,6 +52,12 @@ def fov_from_focal(focal_px: float, source_width: int, model: str = LensModel.OP
     """The inverse of `focal_from_fov`, in degrees."""
     radius = source_width / 2.0 / focal_px
     return 2.0 * math.degrees(radius if model == LensModel.OPENCV_FISHEYE else math.atan(radius))
+
+
+def of_model(settings: Settings, model: str) -> Settings:
+    """The settings of a run with another model of the lens."""
+    camera = settings.camera.model_copy(update={"model": model})
+    return settings.model_copy(update={"camera": camera})
 
 
 def estimate_model(model: str) -> str:

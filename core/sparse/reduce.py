@@ -101,6 +101,25 @@ def reduce_parts(vetoed: JsonObject, parts: Sequence[Candidate]) -> JsonObject:
     return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
 
 
+def reduce_perspective(vetoed: JsonObject, why: str, cases: Sequence[Candidate]) -> JsonObject:
+    """Facts over the cases of a perspective lens, of which the checks let the winner pass.
+
+    Args:
+        vetoed: facts of `reduce_refined`.
+        why: what spoke against the fisheye lens, as a sentence without its full stop.
+        cases: of kind `perspective`.
+
+    Raises:
+        NoReconstruction: no case has a model that the checks let pass.
+    """
+    ranking = rank(cases)
+    if not ranking or ranking[0].row.vetoed:
+        raise NoReconstruction(f"{why}; nor does a model of a perspective lens", where="search")
+    where = f"{vetoed['best']}, vetoed for {vetoed['codes']}"
+    flag = Flag("perspective_after_veto", Severity.WARNING, where=where)
+    return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
+
+
 def candidates_of(facts: Mapping[str, JsonObject], kind: CaseKind) -> list[Candidate]:
     """Cases of a kind out of a task's facts, ordered by key."""
     found = [facts[key] for key in parts_of(facts, kind)]

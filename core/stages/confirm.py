@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from core.checks.model import is_wrong
 from core.checks.stats import model_stats
 from core.io.sparse import read_model, write_model
-from core.scene.case import StartMode
+from core.scene.case import GRAPHS, REDUCERS, StartMode
 from core.sparse.cases import Case, confirmed_or_searched
 from core.stage import StageResult, StageTask
 from core.viewgraph import read_graph
@@ -27,14 +27,14 @@ def run(task: StageTask) -> StageResult:
 
     A warm model inherits what was wrong with the one that it started from; one from scratch has nothing to confirm.
     """
-    reducer = "reduce_parts" if task.has("reduce_parts") else "reduce_refine"
+    reducer = next(name for name in REDUCERS if task.has(name))
     winner = task.facts[reducer]
     from_scratch = winner["start_mode"] == StartMode.SCRATCH
     model, kept = read_model(task.input(reducer)), "searched"
     if task.settings.model.confirm and not from_scratch:
         # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
         case = Case(
-            task.input("prune", "graph"),
+            task.input(*GRAPHS),
             int(winner["start"]),
             int(winner["end"]),
             task.settings.mapper,

@@ -17,6 +17,7 @@ from core.flags import Flag
 from core.geometry.lens import Lens, lens_of
 from core.io.frames import images_folder, write_registered
 from core.io.sparse import read_model, write_model
+from core.scene.case import GRAPHS
 from core.sparse.adjust import Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
 def run(task: StageTask) -> StageResult:
     """Write the final model, the list of its frames and what speaks against it."""
-    graph, n_frames = task.input("prune", "graph"), int(task.facts["frames"]["n_frames"])
+    graph, n_frames = task.input(*GRAPHS), int(task.facts["frames"]["n_frames"])
     n_search = int(task.facts["frames"]["n_search"])
     settings = task.settings.model
     model = read_model(task.input("pieces" if task.piece else "confirm"), task.piece)
@@ -66,7 +67,7 @@ def run(task: StageTask) -> StageResult:
             is_wrong=vetoed,
         )
     model, loose = drop_loose_ends(model, n_search) if settings.drop_loose else (model, [])
-    adjustment, said_px = None, spans_said(task.facts["camera"])
+    adjustment, said_px = None, spans_said(task.facts.get("reverify", task.facts["camera"]))
     left: Flag | None = None
     if settings.final_adjustment:
         adjustment = _adjust(task, model, hold_lens=not task.settings.mapper.refine_lens)
@@ -96,7 +97,7 @@ def _adjust(task: StageTask, model: pycolmap.Reconstruction, *, hold_lens: bool)
     names = {model.image(image_id).name for image_id in model.reg_image_ids()}
     return adjust(
         model,
-        open_cache(database_of(task.input("prune", "graph")), names, MIN_MATCHES),
+        open_cache(database_of(task.input(*GRAPHS)), names, MIN_MATCHES),
         mapper_options(task.settings.mapper, threads=1, seed=task.settings.seed, tuned=False),
         refine_principal_point=task.settings.model.refine_principal_point == "auto",
         align=_aligner(task) if task.settings.model.align_keypoints else None,

@@ -11,14 +11,15 @@ from core.features.io import FrameFeatures, feature_files, read_features
 from core.io.frames import read_frames
 from core.matching.keyframes import read_keyframes
 from core.sparse.focal import choose_spans, find_focal, joined
-from core.sparse.lens import start_lens
+from core.sparse.lens import of_model, start_lens
 from core.stage import StageResult, StageTask
 
 
 def run(task: StageTask) -> StageResult:
     """Map a few spans of keyframes from the task's field of view; a video that gives no model registers 0 images."""
     torch.set_num_threads(task.threads)
-    settings, frames = task.settings, task.facts["frames"]
+    frames = task.facts["frames"]
+    settings = of_model(task.settings, str(task.args.get("model", task.settings.camera.model)))
     files = feature_files(folder for _, folder in task.fan_in("features"))
 
     @lru_cache(maxsize=64)

@@ -15,6 +15,7 @@ from core.mapping.load import matches_of_graph, open_depth_maps, open_mapping_sc
 from core.mapping.scene import Scene
 from core.mapping.support import SparseModel, boxes_by_frame, read_sparse_model
 from core.mapping.surface_rules import SurfacePlacing
+from core.scene.case import GRAPHS
 from core.scene.detection import DetectionRow, Outcome, outcome_counts
 from core.scene.frame import RunFrames
 from core.scene.methods import Placing, Support
@@ -46,7 +47,7 @@ def _placing(task: StageTask) -> Placing:
         return _by_support(task)
     task.report(0, 4, "opening the surface")
     scene, frames = open_scene_of(task)
-    matches = matches_of_graph(task.input("prune", "graph"), scene.views)
+    matches = matches_of_graph(task.input(*GRAPHS), scene.views)
     return SurfacePlacing(scene, frames, matches, task.settings.mapping.time_tolerance_s, task.report)
 
 

@@ -21,14 +21,15 @@ def run(task: StageTask) -> StageResult:
     """Match and verify the pairs whose first frame lies in [start, end)."""
     torch.set_num_threads(task.threads)
     pairs = pairs_of_chunk(_all_pairs(task), int(task.args["start"]), int(task.args["end"]))
-    table = make_table(pairs, match_all(task, pairs))
+    n_search = read_frames(task.input("frames")).n_search
+    table = make_table(pairs, match_all(task, pairs, Patience(n_search)))
     write_pairs(task.out, table)
     task.report(1, 1)
     return StageResult(dict(table_facts(table)))
 
 
-def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[MatchedPair]:
-    """Outcomes of `pairs` in their order, the nearest frames matched first.
+def match_all(task: StageTask, pairs: Sequence[tuple[int, int]], patience: Patience | None = None) -> list[MatchedPair]:
+    """Outcomes of `pairs` in their order, the nearest frames matched first; all with new patience unless it is given.
 
     Features are read when first needed and let go after their last use.
     """
@@ -41,7 +42,7 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]]) -> list[Matched
     last_use = {frame: row for row, pair in enumerate(order) for frame in pair}
     loaded: dict[int, FrameFeatures] = {}
     matched: dict[tuple[int, int], MatchedPair] = {}
-    patience = Patience()
+    patience = patience or Patience()
     for row, pair in enumerate(order):
         task.report(row, len(pairs), f"frames {pair[0]} and {pair[1]}")
         for frame in pair:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from core.checks.model import is_wrong
 from core.io.sparse import read_model, write_model
+from core.scene.case import GRAPHS
 from core.sparse.pieces import find_pieces
 from core.stage import StageResult, StageTask
 from core.viewgraph import read_graph
@@ -11,7 +12,7 @@ from core.viewgraph import read_graph
 
 def run(task: StageTask) -> StageResult:
     """Write ``N/model`` for N = 1, 2, ...: strong models of frames that no earlier one has."""
-    graph, n_frames = task.input("prune", "graph"), int(task.facts["frames"]["n_frames"])
+    graph, n_frames = task.input(*GRAPHS), int(task.facts["frames"]["n_frames"])
     table = read_graph(graph)
     first = read_model(task.input("extend"))
     taken = {int(image_id) - 1 for image_id in first.reg_image_ids()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.errors import NoReconstruction
 from core.scene.case import CaseKind
 from core.sparse.reduce import candidates_of, reduce_parts
 from core.stage import StageResult, StageTask
@@ -9,11 +10,20 @@ from core.stages.choice import keep_winner, with_verified
 
 
 def run(task: StageTask) -> StageResult:
-    """Rank the parts and keep the winner's model; `NoReconstruction` when the checks let none pass."""
+    """Rank the parts and keep the winner's model.
+
+    When the checks let none pass this is `NoReconstruction`, or, where another lens is tried next, no best part and
+    why.
+    """
     parts = candidates_of(task.facts, CaseKind.SECTION)
     if task.settings.model.prefer_verified:
         parts = with_verified(task, parts)
-    facts = reduce_parts(task.facts["reduce_refine"], parts)
+    try:
+        facts = reduce_parts(task.facts["reduce_refine"], parts)
+    except NoReconstruction as none:
+        if not task.args.get("another_lens"):
+            raise
+        return StageResult({"best": "", "why": none.message})
     keep_winner(task, facts)
     task.report(1, 1, f"{len(parts)} parts ranked")
     return StageResult(facts)

@@ -48,14 +48,14 @@ class Complaints:
         if texts:
             self._of_packet[packet] = texts
 
-    def of(self, packet: object) -> bool:
+    def of(self, packet: int | None) -> bool:
         """Whether something was said of a packet."""
-        return isinstance(packet, int) and packet in self._of_packet
+        return packet in self._of_packet
 
-    def came(self, frame: int, packet: object) -> None:
-        """Note that a frame came of a packet; None is the latest one."""
+    def came(self, frame: int, packet: int | None) -> None:
+        """Note that a frame came of a packet; None is the oldest one of which something was said."""
         self._frames += 1
-        number = packet if isinstance(packet, int) else next(iter(self._of_packet), None)
+        number = next(iter(self._of_packet), None) if packet is None else packet
         texts = self._of_packet.pop(number, None) if number is not None else None
         if texts:
             self._of_frame[frame] = texts

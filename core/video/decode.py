@@ -29,7 +29,7 @@ from core.video.container import film_of, open_container, require_pixels, time_b
 from core.video.formats import TIMELESS
 from core.video.limits import MAX_FRAME_PIXELS
 from core.video.orientation import Orientation, square_width
-from core.video.soundness import Loss, Sent, SoundFrames, shows_picture
+from core.video.soundness import Loss, Sent, SoundFrames, number_of, shows_picture
 from core.video.table import TimesFrom
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ class VideoReader:
             self._container.close()
             raise
         self._stream.thread_type = "NONE"
-        codec.flags |= Flags.copy_opaque  # a frame then carries the number of its packet
+        codec.flags |= Flags.copy_opaque  # a frame then carries what its packet was given
         self.stream_index = int(self._stream.index)
         self._time_base = time_base_of(self._stream)
         self.time_base = 1 / self._made_rate if self._made_rate else self._time_base
@@ -197,7 +197,7 @@ class VideoReader:
             self._video_end = pts + duration
             self.interlaced_frames += bool(frame.interlaced_frame or self.field_order)
             if self._complaints and self._stands_alone:
-                self._complaints.came(index, frame.opaque)
+                self._complaints.came(index, number_of(frame))
             yield DecodedFrame(index, pts, bool(frame.key_frame), frame, self.orientation)
         self._clock.finish()
 
@@ -221,7 +221,7 @@ class VideoReader:
 
     def _is_complained_of(self, frame: av.VideoFrame) -> bool:
         """Whether the decoder complained of a frame that others refer to."""
-        return self._complaints is not None and not self._stands_alone and self._complaints.of(frame.opaque)
+        return self._complaints is not None and not self._stands_alone and self._complaints.of(number_of(frame))
 
     def _decode(self) -> Iterator[av.VideoFrame | None]:
         """Frames of the stream as the decoder gives them; None once it holds none back any more."""
@@ -234,7 +234,9 @@ class VideoReader:
             else:
                 if shows_picture(self.codec, packet):
                     self._sound.sent(sent)
-                packet.opaque = number
+                # PyAV finds it by the object's address, over all readers of the process: a small number is one object
+                # for all of them, and the frames of another reader would take it along when they are let go.
+                packet.opaque = sent
                 try:
                     frames = self._decoded(packet, number)
                 except av.error.FFmpegError:

@@ -61,7 +61,7 @@ class Frame(Protocol):
 
     @property
     def opaque(self) -> object:
-        """Number of its packet, None where the decoder lost it."""
+        """Its packet as a `Sent`, None where the decoder lost it."""
 
     @property
     def pts(self) -> int | None:
@@ -78,6 +78,11 @@ class Frame(Protocol):
     @property
     def interlaced_frame(self) -> bool:
         """Whether it was made of two fields."""
+
+
+def number_of(frame: Frame) -> int | None:
+    """Number of the packet that a frame came of; None where the decoder lost it."""
+    return frame.opaque.number if isinstance(frame.opaque, Sent) else None
 
 
 AnyFrame = TypeVar("AnyFrame", bound=Frame)
@@ -142,7 +147,8 @@ class SoundFrames(Generic[AnyFrame]):
             duration: what a frame of this stream lasts, in units of pts.
             broken: there is more than the frame's own mark to tell that it is.
         """
-        number = frame.opaque if isinstance(frame.opaque, int) else next(iter(self._pending), 0)
+        known = number_of(frame)
+        number = next(iter(self._pending), 0) if known is None else known
         packet = self._pending.pop(number, Sent(number, frame.pts))
         if frame.interlaced_frame:
             self._drop_second_field(packet, duration)

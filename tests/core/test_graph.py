@@ -18,10 +18,15 @@ from core.task_key import piece_of, stage_of
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
 SEARCHED: dict[str, Facts] = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
 CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": False}}
-VETOED: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": True}}
+WRONG: Facts = {"vetoed": True, "codes": "bent_model, weak_join", "start": 20, "end": 200}
+VETOED: dict[str, Facts] = {**SEARCHED, "reduce_refine": WRONG}
 PRUNED: dict[str, Facts] = {**VETOED, "prune": {"parts": [[0, 61], [61, 200]]}}
+PARTED: dict[str, Facts] = {**PRUNED, "reduce_parts": {"best": "section_001_0061_0200"}}
+NO_PART: dict[str, Facts] = {**PRUNED, "reduce_parts": {"best": "", "why": "every model was vetoed"}}
 DENSE: dict[str, Facts] = {**CHOSEN, "undistort": {"n_views": 90}}
-AFTER_VETO: dict[str, Facts] = {**PRUNED, "undistort": {"n_views": 90}, "pieces": {"n_pieces": 1}}
+MODELS: dict[str, Facts] = {"undistort": {"n_views": 90}, "pieces": {"n_pieces": 1}}
+AFTER_VETO: dict[str, Facts] = {**PARTED, **MODELS}
+OTHER_LENS: dict[str, Facts] = {**NO_PART, **MODELS}
 
 
 def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, Any] | None = None) -> list[str]:
@@ -35,7 +40,8 @@ def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, A
 
 
 @pytest.mark.parametrize(
-    "facts", [{}, FRAMES, SEARCHED, CHOSEN, VETOED, PRUNED, AFTER_VETO, DENSE, {**DENSE, "pieces": {"n_pieces": 2}}]
+    "facts",
+    [{}, FRAMES, SEARCHED, CHOSEN, VETOED, PRUNED, NO_PART, AFTER_VETO, OTHER_LENS, DENSE, {**DENSE, **MODELS}],
 )
 @pytest.mark.parametrize("preset", ["default", "draft", "thesis"])
 def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: str) -> None:
@@ -86,7 +92,7 @@ def test_a_start_that_finds_no_lens_stops_nothing() -> None:
 
 def test_the_plan_only_grows() -> None:
     good: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, CHOSEN, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
-    for known in (good, [SEARCHED, VETOED, PRUNED, AFTER_VETO]):
+    for known in (good, [SEARCHED, VETOED, PRUNED, PARTED, AFTER_VETO], [PRUNED, NO_PART, OTHER_LENS]):
         for before, after in pairwise(known):
             assert set(keys(before)) <= set(keys(after))
             earlier, later = (
@@ -106,7 +112,44 @@ def test_after_a_veto_every_part_is_a_case_and_all_that_follows_reads_the_pruned
     readers = ("extend", "pieces", "map_defects", "extend@1", "map_defects@1")
     assert all("prune" in tasks[key].depends and "graph" not in tasks[key].depends for key in readers)
     nothing = {**VETOED, "prune": {"parts": []}}
-    assert "reduce_parts" in keys(nothing)  # which then says that there is no reconstruction
+    assert "reduce_parts" in keys(nothing)  # which then says that there is none
+
+
+def test_where_no_part_passes_a_perspective_lens_is_sought_and_all_that_follows_reads_its_graph() -> None:
+    assert keys(PRUNED)[-1] == "reduce_parts"  # whether its cost is needed is not known yet
+    assert not {"reverify", "reduce_perspective"} & set(keys(AFTER_VETO))
+    tasks = {task.key: task for task in expand(make_settings(), OTHER_LENS)}
+    assert tasks["reduce_parts"].args == {"another_lens": True}
+    starts = [key for key in tasks if key.startswith("focal/SIMPLE_RADIAL-")]
+    assert len(starts) == len(make_settings().camera.fov_starts_deg)
+    assert dict(tasks["focal/SIMPLE_RADIAL-070.0"].args) == {"fov_deg": 70.0, "model": "SIMPLE_RADIAL"}
+    assert all(tasks[key].optional and tasks[key].depends == tasks["focal/070.0"].depends for key in starts)
+    assert set(starts) < set(tasks["reverify"].depends)
+    assert not set(starts) & set(tasks["camera"].depends)
+    case = "perspective/perspective_000_0020_0200"
+    assert tasks[case].depends == ("reverify",)
+    assert case in tasks["reduce_perspective"].depends
+    assert tasks["confirm"].depends == ("frames", "reverify", "reduce_perspective")
+    readers = ("extend", "pieces", "map_defects", "extend@1", "map_defects@1")
+    assert all("reverify" in tasks[key].depends and "prune" not in tasks[key].depends for key in readers)
+
+
+@pytest.mark.parametrize(
+    ("options", "codes"),
+    [
+        ({"camera.model": "OPENCV"}, "bent_model"),
+        ({"camera.model": "OPENCV_FISHEYE"}, "bent_model"),
+        ({"camera.fov_deg": 90}, "bent_model"),
+        ({"camera.focal": "colmap"}, "bent_model"),
+        ({}, "no_parallax, weak_join"),
+    ],
+)
+def test_a_lens_that_was_told_or_is_not_to_blame_is_not_sought_anew(options: dict[str, Any], codes: str) -> None:
+    facts = {**PRUNED, "reduce_refine": {**WRONG, "codes": codes}}
+    tasks = {task.key: task for task in expand(make_settings(options=options), facts)}
+    assert tasks["reduce_parts"].args == {"another_lens": False}  # it then ends the search
+    assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")
+    assert not any(key.startswith(("focal/SIMPLE_RADIAL", "reverify", "perspective")) for key in tasks)
 
 
 def test_the_gallery_waits_until_the_further_models_are_known() -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -87,6 +88,41 @@ def test_patience_with_a_frame_ends_unless_something_matched_it() -> None:
     assert not patience.has_run_out((0, 1))
     patience.note((8, 9), good)
     assert not patience.has_run_out((9, 10))
+
+
+def tried_in_order(
+    n_frames: int, window: int, n_search: int, strong: Callable[[int, int], bool]
+) -> list[tuple[int, int]]:
+    """Pairs that LightGlue is tried on where the cheap way matches none but those that `strong` names."""
+    first, second, _ = _frames(blur=0.1)
+    good = _matcher(matching__method="mutual_nearest").match(first, second)
+    poor = replace(good, geometry=replace(good.geometry, inliers=good.geometry.inliers[:9]), tried_lightglue=True)
+    patience, tried = Patience(n_search), list[tuple[int, int]]()
+    for pair in [(a, a + gap) for gap in range(1, window + 1) for a in range(n_frames - gap)]:
+        if strong(*pair):
+            patience.note(pair, good)
+        elif not patience.has_run_out(pair):
+            tried.append(pair)
+            patience.note(pair, poor)
+    return tried
+
+
+def test_a_jump_is_tried_on_the_three_nearest_pairs_across_it() -> None:
+    tried = tried_in_order(12, 5, 12, lambda a, b: (a < 6) == (b < 6))
+    assert tried == [(5, 6), (4, 6), (5, 7)]
+    assert len(tried_in_order(12, 5, 0, lambda a, b: (a < 6) == (b < 6))) == 15  # where nothing says which are nearest
+
+
+def test_pairs_over_a_black_frame_are_no_jump() -> None:
+    tried = tried_in_order(12, 5, 12, lambda a, b: (a < 6) == (b < 6) and 6 not in (a, b))
+    assert [pair for pair in tried if 6 in pair] == [(5, 6), (6, 7)]
+    across = [pair for pair in tried if 6 not in pair]
+    assert across == [(5, 7), (4, 7), (5, 8)]
+
+
+def test_a_place_that_one_pair_reaches_over_is_tried_on_all() -> None:
+    tried = tried_in_order(12, 5, 12, lambda a, b: (a < 6) == (b < 6) or (a, b) == (5, 6))
+    assert len(tried) == 14
 
 
 def test_without_a_rematch_the_cheap_outcome_stays(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -143,3 +143,27 @@ def test_the_part_of_a_vetoed_model_is_the_selected_case() -> None:
         ("section_000_0000_0030", "section")
     ]
     assert report.quality["search"]["parts"]["registered_images_max"] == 30
+
+
+@pytest.mark.parametrize("passed", [True, False])
+def test_of_two_lenses_the_one_that_the_model_started_from_speaks(passed: bool) -> None:
+    record = full_record()
+    doubt = {"severity": "warning", "where": "camera"}
+    fisheye = {"model": "OPENCV_FISHEYE", "focal_from": "colmap", "flags": [{"code": "lens_unknown", **doubt}]}
+    other = {"model": "SIMPLE_RADIAL", "focal_from": "estimated", "flags": [{"code": "focal_uncertain", **doubt}]}
+    name = "perspective_000_0000_0030"
+    choice = {"best": name, "kind": "perspective", "flags": [{"code": "perspective_after_veto", **doubt}]}
+    tasks = [
+        *(task for task in record.tasks if task.key != "camera"),
+        TaskRecord("camera", TaskState.SUCCEEDED, facts=fisheye),
+        TaskRecord("reverify", TaskState.SUCCEEDED, facts=other),
+        case(name, 30, 900),
+        TaskRecord(
+            "reduce_perspective", TaskState.SUCCEEDED if passed else TaskState.FAILED, facts=choice if passed else {}
+        ),
+    ]
+    report = build_report(replace(record, tasks=tasks))
+    codes = [flag["code"] for flag in report.quality["flags"]]
+    assert codes == (["focal_uncertain", "perspective_after_veto"] if passed else ["lens_unknown"])
+    assert report.quality["lens"]["from"] == ("estimated" if passed else "colmap")
+    assert (name in [row["name"] for row in report.cases if row["selected"]]) == passed

@@ -1,7 +1,8 @@
-"""After a veto: a graph without the pairs over the weld, its parts mapped, and the larger one gone on with."""
+"""After a veto: the graph without the pairs over the weld and its parts mapped, or all of it with another lens."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,16 +10,38 @@ import numpy as np
 import pycolmap
 import pytest
 
+from core.errors import NoReconstruction
+from core.features.io import write_features
+from core.graph import PERSPECTIVE, STAGES
 from core.io.frames import write_frames
+from core.scene.case import GRAPHS
 from core.scene.frame import Crop
-from core.settings import make_settings
+from core.settings import make_settings, only_declared
 from core.stage import Facts, StageResult, StageTask
-from core.stages import prune, reduce_parts, section
+from core.stages import focal, perspective, prune, reduce_parts, reduce_perspective, reverify, section
+from core.task_key import stage_of
+from core.verification import CameraFields, read_camera
 from core.viewgraph import read_graph
 from tests.core.making_rows import run_frames
-from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, view_graph, write_graph
+from tests.core.sparse.scene import HEIGHT, LENS, WIDTH, center_errors, make_scene, view_graph, write_graph
 
 N, WELD = 28, 12
+FEW, FOCAL = 16, 340.0
+TRUE: CameraFields = {
+    "model": "SIMPLE_RADIAL",
+    "width": WIDTH,
+    "height": HEIGHT,
+    "params": [FOCAL, WIDTH / 2, HEIGHT / 2, -0.03],
+}
+SIZES: Facts = {
+    "crop": [0, 0, WIDTH, HEIGHT],
+    "source_width": WIDTH,
+    "source_height": HEIGHT,
+    "n_frames": FEW,
+    "n_search": FEW,
+}
+VETOED: Facts = {"best": "seg_000_0000_0016", "start": 0, "end": FEW, "vetoed": True, "codes": "bent_model"}
+WHY = "every model was vetoed by the checks"
 
 
 class Run:
@@ -37,7 +60,8 @@ class Run:
 
     def go(self, stage: Any, key: str, args: Facts | None = None) -> Facts:
         """Run a stage on everything before it."""
-        settings = make_settings("default", {"model.prefer_verified": False})
+        options = {"model.prefer_verified": False, "camera.focal_span": 14, "camera.focal_spans": 1}
+        settings = only_declared(make_settings("default", options), STAGES[stage_of(key)].settings)
         inputs, facts = dict(self.inputs), dict(self.facts)
         task = StageTask(key, args or {}, settings, inputs, facts, (), self.add(key))
         result: StageResult = stage.run(task)
@@ -81,8 +105,53 @@ def test_the_sides_of_a_weld_are_mapped_alone_and_the_larger_one_wins(tmp_path: 
     assert center_errors(kept, scene).max() < 0.05
 
 
-@pytest.mark.parametrize("name", ["graph", "prune"])
-def test_a_case_reads_the_pruned_graph_where_there_is_one(tmp_path: Path, name: str) -> None:
-    inputs = {"graph": tmp_path / "graph", name: tmp_path / name}
+@pytest.mark.parametrize("name", GRAPHS)
+def test_a_case_reads_the_last_graph_that_there_is(tmp_path: Path, name: str) -> None:
+    inputs = {key: tmp_path / key for key in GRAPHS[GRAPHS.index(name) :]}
     task = StageTask("extend", {}, make_settings(), inputs, {}, (), tmp_path)
-    assert task.input("prune", "graph") == tmp_path / name
+    assert task.input(*GRAPHS) == tmp_path / name
+
+
+def test_the_perspective_lens_is_found_and_the_cameras_with_it(tmp_path: Path) -> None:
+    scene = make_scene(FEW, 700, lens=TRUE)
+    run = Run(tmp_path)
+    write_frames(run.add("frames", SIZES), run_frames(FEW), Crop(0, 0, WIDTH, HEIGHT, WIDTH, HEIGHT))
+    features = run.add("features/000")
+    for frame, found in enumerate(scene.features):
+        write_features(features / f"{frame:04d}.npz", found)
+    run.add("reduce_refine", VETOED)
+    run.add("reduce_parts", {"best": "", "why": WHY})
+    taken_for_fisheye = replace(scene, lens=LENS)
+    table = view_graph(taken_for_fisheye)
+    write_graph(tmp_path / "graph", taken_for_fisheye, table)
+    run.add("graph")
+
+    start = run.go(focal, f"focal/{PERSPECTIVE}-100.0", {"fov_deg": 100.0, "model": str(PERSPECTIVE)})
+    assert start["focal_px"] == pytest.approx(FOCAL, rel=0.03)
+    lens = run.go(reverify, "reverify", {"model": str(PERSPECTIVE)})
+    assert (lens["model"], lens["focal_from"], lens["agreement"]) == ("SIMPLE_RADIAL", "estimated", 1.0)
+    assert read_camera(run.inputs["reverify"]).model_name == "SIMPLE_RADIAL"
+    again = read_graph(run.inputs["reverify"])
+    assert again.pairs.tolist() == table.pairs.tolist()
+    assert again.n_inliers.sum() > 0.8 * table.n_inliers.sum()
+
+    name = "perspective_000_0000_0016"
+    case = run.go(perspective, f"perspective/{name}", {"name": name, "start": 0, "end": FEW})
+    assert (case["kind"], case["registered_images"], case["vetoed"]) == ("perspective", FEW, 0)
+    chosen = run.go(reduce_perspective, "reduce_perspective")
+    assert (chosen["best"], [flag["code"] for flag in chosen["flags"]]) == (name, ["perspective_after_veto"])
+    model = pycolmap.Reconstruction(run.inputs["reduce_perspective"] / "model")
+    assert np.median(center_errors(model, scene)) < 0.01
+
+
+@pytest.mark.parametrize(
+    "starts", [[], [{"fov_deg": 70.0, "focal_px": 400.0, "k1": 0.0, "registered": 0, "points3D": 0}]]
+)
+def test_without_a_perspective_lens_the_run_stays_refused_for_what_it_was(starts: list[Facts], tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    run.add("frames", SIZES)
+    run.add("reduce_parts", {"best": "", "why": WHY})
+    for start in starts:
+        run.add(f"focal/{PERSPECTIVE}-070.0", {**start, "mean_reprojection_error_px": 0.0})
+    with pytest.raises(NoReconstruction, match=f"{WHY}; no perspective lens was found either"):
+        run.go(reverify, "reverify", {"model": str(PERSPECTIVE)})

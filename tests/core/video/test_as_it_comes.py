@@ -233,6 +233,21 @@ def test_what_is_shown_of_a_damaged_film_is_sound_and_what_is_not_is_named(
     assert all(whole[row.pts] == row.sha256 for row in part.rows)
 
 
+@pytest.mark.tool("ffmpeg")
+@pytest.mark.parametrize("when", range(30, 48))
+def test_a_film_is_sound_whenever_the_frames_of_another_reader_are_let_go(when: int, tmp_path: Path) -> None:
+    """PyAV keeps what packets carry by the address of an object, and small numbers are the same object everywhere."""
+    path = film(tmp_path / "whole.mp4", *X264_B)
+    with VideoReader(path) as other:
+        held = list(other.frames())
+    shown = 0
+    with VideoReader(path) as reader:
+        for shown, _ in enumerate(reader.frames(), start=1):
+            if shown > when:
+                held.clear()
+    assert (shown, reader.losses) == (48, [])
+
+
 def test_frames_that_the_index_lists_and_the_file_lacks_are_counted(tmp_path: Path) -> None:
     cut = cut_to(SAMPLE, 0.5, tmp_path / "cut.mp4")
     with pytest.raises(BadInput, match=r"\d+ of the 96 frames that its index lists are missing"):

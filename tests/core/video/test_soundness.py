@@ -12,11 +12,15 @@ from core.video.soundness import REORDERING, Sent, SoundFrames, shows_picture
 
 @dataclass
 class Frame:
-    opaque: int | None
+    number: int | None
     pts: int | None
     key_frame: bool = False
     is_corrupt: bool = False
     interlaced_frame: bool = False
+
+    @property
+    def opaque(self) -> Sent | None:
+        return None if self.number is None else Sent(self.number, self.pts)
 
 
 class Decoder:
@@ -36,11 +40,11 @@ class Decoder:
     def come(self, *frames: Frame) -> None:
         for frame in frames:
             self.sound.came(frame, Fraction(1))
-            self.shown += [one.opaque for one in self.sound.sound()]
+            self.shown += [one.number for one in self.sound.sound()]
 
     def end(self) -> list[tuple[int, int]]:
         self.sound.ended()
-        self.shown += [one.opaque for one in self.sound.sound()]
+        self.shown += [one.number for one in self.sound.sound()]
         return [(loss.after, loss.frames) for loss in self.sound.losses]
 
 

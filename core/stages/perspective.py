@@ -1,0 +1,12 @@
+"""Stage `perspective`: the window of the best vetoed case, mapped with a perspective lens."""
+
+from __future__ import annotations
+
+from core.scene.case import CaseKind
+from core.sparse.case_stage import run_case_task
+from core.stage import StageResult, StageTask
+
+
+def run(task: StageTask) -> StageResult:
+    """Map the window from scratch; see `core.sparse.cases.run_case`."""
+    return run_case_task(task, CaseKind.PERSPECTIVE)

@@ -27,6 +27,7 @@ from store.keys import Keys
 from store.settings import DeploymentSettings, deployment_settings
 from worker.broker import TaskQueue
 from worker.cleaner import UploadCleaner
+from worker.limits import say_confinement
 from worker.loop import PollingRunners, WorkerService
 from worker.periodic import Periodic
 
@@ -41,6 +42,7 @@ def command(parsed: argparse.Namespace) -> int:
         raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
     settings = deployment_settings()
     json_log.configure()
+    say_confinement()
     with _alone(settings) as identity:
         database = open_database(settings)
         try:

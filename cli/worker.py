@@ -13,6 +13,7 @@ from store.factory import open_database
 from store.monitoring import WorkerRegistry
 from store.settings import DeploymentSettings, deployment_settings
 from worker.broker import run_worker
+from worker.limits import say_confinement
 
 _LATE = 3
 """Heartbeats after which a worker counts as gone."""
@@ -29,6 +30,7 @@ def command(parsed: argparse.Namespace) -> int:
     if parsed.check:
         return _check(settings)
     json_log.configure()
+    say_confinement()
     database = open_database(settings)
     try:
         return run_worker(settings, database, queues, parsed.workers or settings.worker_count())

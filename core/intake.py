@@ -7,10 +7,8 @@ as JSON on stdout.
 
 from __future__ import annotations
 
-import ctypes
 import json
 import math
-import os
 import resource
 import signal
 import sys
@@ -21,6 +19,7 @@ from typing import NotRequired, TypedDict
 
 from core.annotations.foreign.unreadable import is_video_file
 from core.annotations.load import load_annotations
+from core.confinement import ProcessLimits, confine, die_with
 from core.errors import BadInput, BladeAtlasError
 from core.geometry.lens import scale_to
 from core.roi import crop_of
@@ -33,7 +32,7 @@ from core.video.orientation import square_width
 from core.video.picture_reader import PictureReader
 from core.videos import Recording, RecordingFields, naming_video, require_count, require_one_size
 
-_PR_SET_PDEATHSIG = 1
+_OPEN_FILES = 64
 
 
 class LimitFields(TypedDict, total=False):
@@ -222,19 +221,10 @@ def answer(question: Question) -> Answer:
 
 def limit_process(parent: int, memory_bytes: int, seconds: float) -> None:
     """Hold this process to its limits: address space, processor time, no file written, no life after `parent`."""
-    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
-    if os.getppid() != parent:
-        os._exit(1)
-    processor_s = max(1, math.ceil(seconds))
-    # Above the soft limit comes SIGXCPU, which tells the parent why.
-    resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s + 1))
-    for what, limit in (
-        (resource.RLIMIT_AS, memory_bytes),
-        (resource.RLIMIT_FSIZE, 0),
-        (resource.RLIMIT_CORE, 0),
-        (resource.RLIMIT_NOFILE, 64),
-    ):
-        resource.setrlimit(what, (limit, limit))
+    confine(ProcessLimits(address_bytes=memory_bytes, cpu_s=max(1, math.ceil(seconds))))
+    die_with(parent, signal.SIGKILL)
+    for what, most in ((resource.RLIMIT_FSIZE, 0), (resource.RLIMIT_NOFILE, _OPEN_FILES)):
+        resource.setrlimit(what, (most, most))
 
 
 def main() -> None:

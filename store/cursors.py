@@ -6,6 +6,7 @@ import base64
 import binascii
 import json
 from collections.abc import Sequence
+from datetime import UTC, datetime
 
 from core.errors import BadInput
 
@@ -33,6 +34,27 @@ def decode_cursor(name: str, kinds: Sequence[type], cursor: str) -> tuple[Cursor
     if own != name or len(values) != len(kinds) or not all(map(_fits, values, kinds)):
         raise bad_cursor()
     return tuple(values)
+
+
+def moment_cursor(name: str, moment: datetime, row_id: str) -> str:
+    """A cursor of a list that is ordered by a moment and then by id."""
+    return encode_cursor(name, (moment.isoformat(), row_id))
+
+
+def read_moment_cursor(name: str, cursor: str) -> tuple[datetime, str]:
+    """The moment, in UTC, and the id that `moment_cursor` was given.
+
+    Raises:
+        BadInput: `bad_cursor`, it was not made by `moment_cursor` for this list.
+    """
+    text, row_id = decode_cursor(name, (str, str), cursor)
+    try:
+        moment = datetime.fromisoformat(str(text))
+        if moment.tzinfo is None:
+            raise bad_cursor()
+        return moment.astimezone(UTC), str(row_id)
+    except (ValueError, OverflowError):
+        raise bad_cursor() from None
 
 
 def bad_cursor() -> BadInput:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime
 
 from sqlalchemy import Select, and_, func, or_, select
 
-from store.cursors import bad_cursor, decode_cursor, encode_cursor
+from store.cursors import moment_cursor, read_moment_cursor
 from store.db import Database
 from store.integration_models import MetadataEntry
 from store.models import ACTIVE_INSPECTION, Inspection
@@ -43,13 +43,13 @@ def list_inspections(db: Database, chosen: Filter, limit: int, cursor: str | Non
     """One page; `BadInput` for a cursor that is none of ours."""
     query = _chosen(chosen).order_by(Inspection.created_at.desc(), Inspection.id.desc()).limit(limit + 1)
     if cursor is not None:
-        created_at, inspection_id = _decoded(cursor)
+        created_at, inspection_id = read_moment_cursor(_NAME, cursor)
         same = and_(Inspection.created_at == created_at, Inspection.id < inspection_id)
         query = query.where(or_(Inspection.created_at < created_at, same))
     with db.read() as session:
         rows: Sequence[Inspection] = session.scalars(query).all()
-    more = len(rows) > limit
-    return Page(rows[:limit], _encoded(rows[limit - 1]) if more else None)
+    last = rows[limit - 1] if len(rows) > limit else None
+    return Page(rows[:limit], None if last is None else moment_cursor(_NAME, last.created_at, last.id))
 
 
 def count_active(db: Database) -> int:
@@ -75,18 +75,3 @@ def _chosen(chosen: Filter) -> Select[Inspection]:
         entry = (MetadataEntry.inspection_id == Inspection.id, MetadataEntry.name == name, MetadataEntry.value == value)
         query = query.where(select(MetadataEntry.name).where(*entry).exists())
     return query
-
-
-def _encoded(row: Inspection) -> str:
-    return encode_cursor(_NAME, (row.created_at.isoformat(), row.id))
-
-
-def _decoded(cursor: str) -> tuple[datetime, str]:
-    created_at, inspection_id = decode_cursor(_NAME, (str, str), cursor)
-    try:
-        moment = datetime.fromisoformat(str(created_at))
-        if moment.tzinfo is None:
-            raise bad_cursor()
-        return moment.astimezone(UTC), str(inspection_id)
-    except (ValueError, OverflowError):
-        raise bad_cursor() from None

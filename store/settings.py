@@ -43,6 +43,24 @@ class DeploymentSettings(BaseSettings):
     task_seconds: float = Field(
         14_400.0, gt=0, description="a task that runs longer is ended (timeout) and not tried again, in seconds"
     )
+    task_address_bytes: int = Field(
+        64 << 30,
+        ge=0,
+        description="address space of a process of a task (RLIMIT_AS), which is more than the memory that it uses; "
+        "beyond it the task fails (oom); not for the queue gpu, whose drivers reserve more; 0 = no limit",
+    )
+    task_cpu_seconds: float = Field(
+        0.0,
+        ge=0,
+        description="processor time of a process of a task (RLIMIT_CPU), all threads together, in seconds; beyond it "
+        "the task is ended (timeout); 0 = task_seconds on each thread",
+    )
+    task_file_bytes: int = Field(
+        16 << 30,
+        ge=0,
+        description="largest file that a task writes (RLIMIT_FSIZE); beyond it the task fails (file_too_large); "
+        "0 = no limit",
+    )
     artifacts_url: str = Field(
         "", description="where files are kept: s3://bucket/prefix or file:///shared (fsspec); empty = data folder"
     )

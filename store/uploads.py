@@ -12,17 +12,19 @@ import hashlib
 import os
 import uuid
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from datetime import timedelta
+from datetime import datetime, timedelta
+from enum import StrEnum
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from sqlalchemy import update
+from sqlalchemy import and_, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.errors import BladeAtlasError, DiskFull
+from store.cursors import moment_cursor, read_moment_cursor
 from store.db import Database
 from store.disk import NO_SPACE, sync_path
 from store.leasing import changed
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 
 
 _REMEMBERED = 256
+_NAME = "uploads"
 _PART = "form-"
 """Begin of the names of files that came in a form: they have no row and live as long as their request."""
 
@@ -133,6 +136,13 @@ def _as_expected(error: OSError) -> Exception:
     return error
 
 
+class UploadState(StrEnum):
+    """Whether all bytes of an upload have arrived."""
+
+    OPEN = "open"
+    FINISHED = "finished"
+
+
 @dataclass(frozen=True)
 class UploadView:
     """An upload as others may see it."""
@@ -146,11 +156,29 @@ class UploadView:
     sha256: str | None
     """Of the whole file; None until it is whole and was read once."""
     removed: bool
+    """True also of one whose time is over, whether or not the cleaner came by."""
+    created_at: datetime
+    updated_at: datetime
+    expires_at: datetime | None
+    """When it ends, finished or not; None = never."""
 
     @property
     def complete(self) -> bool:
         """True once every byte is there."""
         return self.offset == self.length
+
+    @property
+    def state(self) -> UploadState:
+        """Finished once every byte is there."""
+        return UploadState.FINISHED if self.complete else UploadState.OPEN
+
+
+@dataclass(frozen=True)
+class UploadPage:
+    """Some uploads and how to get the next."""
+
+    uploads: Sequence[UploadView]
+    cursor: str | None
 
 
 @dataclass(frozen=True)
@@ -210,17 +238,37 @@ class Uploads:
                 expires_at=now + timedelta(hours=self.keep_hours),
             )
             session.add(row)
-        return _view(row)
+        return _view(row, now)
 
     def find(self, upload_id: str, owner: str) -> UploadView | None:
         """An upload of this owner; None when there is none. A removed one is found, with its mark."""
         with self.db.read() as session:
-            row = session.get(Upload, upload_id)
-        if row is None or row.owner != owner:
-            return None
-        view = _view(row)
+            row, now = session.get(Upload, upload_id), self.db.now(session)
+        return None if row is None or row.owner != owner else self._on_disk(_view(row, now))
+
+    def page(self, owner: str, state: UploadState | None, limit: int, cursor: str | None) -> UploadPage:
+        """Uploads of this owner that were not removed, newest first; `BadInput` for a cursor that is none of ours."""
+        query = select(Upload).where(Upload.owner == owner, Upload.removed_at.is_(None))
+        if state is not None:
+            finished = Upload.offset == Upload.length
+            query = query.where(finished if state == UploadState.FINISHED else ~finished)
+        if cursor is not None:
+            created_at, upload_id = read_moment_cursor(_NAME, cursor)
+            same = and_(Upload.created_at == created_at, Upload.id < upload_id)
+            query = query.where(or_(Upload.created_at < created_at, same))
+        with self.db.read() as session:
+            now = self.db.now(session)
+            query = query.where(or_(Upload.expires_at.is_(None), Upload.expires_at > now))
+            query = query.order_by(Upload.created_at.desc(), Upload.id.desc())
+            views = [_view(row, now) for row in session.scalars(query.limit(limit + 1))]
+        last = views[limit - 1] if len(views) > limit else None
+        shown = [self._on_disk(view) for view in views[:limit]]
+        return UploadPage(shown, None if last is None else moment_cursor(_NAME, last.created_at, last.id))
+
+    def _on_disk(self, view: UploadView) -> UploadView:
+        """As the file says: bytes that it lacks are not safe, and without it there is no upload."""
         try:
-            size = self.path(upload_id).stat().st_size
+            size = self.path(view.id).stat().st_size
         except FileNotFoundError:
             return replace(view, offset=0, removed=True)
         return replace(view, offset=min(view.offset, size))
@@ -242,7 +290,7 @@ class Uploads:
         self.path(upload_id).unlink(missing_ok=True)
 
 
-def _view(row: Upload) -> UploadView:
+def _view(row: Upload, now: datetime) -> UploadView:
     return UploadView(
         id=row.id,
         owner=row.owner,
@@ -250,5 +298,8 @@ def _view(row: Upload) -> UploadView:
         offset=row.offset,
         metadata=dict(row.upload_metadata),
         sha256=row.sha256,
-        removed=row.removed_at is not None,
+        removed=row.removed_at is not None or (row.expires_at is not None and row.expires_at <= now),
+        created_at=row.created_at,
+        updated_at=row.updated_at,
+        expires_at=row.expires_at,
     )

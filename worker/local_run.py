@@ -35,6 +35,7 @@ from store.plan import Plan
 from store.records import InputFiles, InspectionView, TaskView
 from store.settings import available_cores, deployment_settings
 from worker.events import EventKind, OnEvent, Outcome, Reporter, StageOutcome, Tracker
+from worker.limits import TaskLimits
 from worker.logs import TaskLogs
 from worker.loop import LocalRunners, raise_failure
 from worker.publish import publish, record_of, report_rows
@@ -216,8 +217,7 @@ class _Run:
             self._results,
             TaskLogs(folder.logs),
             self._reporter,
-            memory_limit_bytes=deployment.task_memory_bytes,
-            limit_s=deployment.task_seconds,
+            limits=TaskLimits.of(deployment),
         )
         owner = f"run:{os.getpid()}"
         self._runners = LocalRunners(runner, owner, workers, deployment.heartbeat_s, inspection_id=_LOCAL)

@@ -31,6 +31,7 @@ from store.records import Lease
 from store.retry import retried_until
 from store.settings import DeploymentSettings
 from worker.cleaner import Cleaner
+from worker.limits import TaskLimits
 from worker.logs import TaskLogs
 from worker.mirror import open_results
 from worker.periodic import Periodic
@@ -194,8 +195,7 @@ class WorkerService:
             TaskLogs(logs, by_inspection=True, mirror=remote),
             TaskLog(self._ended),
             self.inputs,
-            self.settings.task_memory_bytes,
-            self.settings.task_seconds,
+            TaskLimits.of(self.settings),
             self.settings.max_frame_pixels,
         )
 

@@ -5,11 +5,10 @@ Local runs and embedded servers use these threads; a queue's task calls `TaskRun
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
@@ -26,6 +25,7 @@ from store.records import Lease, Result
 from store.retry import retried_until
 from store.settings import available_cores
 from store.tables import rows_of
+from worker.limits import TaskLimits
 from worker.logs import TaskLogs
 from worker.results import Manifest, ResultFolders
 from worker.task import Ended, StopReason, TaskProcess
@@ -80,9 +80,7 @@ class TaskRunner:
     logs: TaskLogs
     observer: Observer
     inputs: LocalInputs = field(default_factory=LocalInputs)
-    memory_limit_bytes: int = 0
-    limit_s: float = math.inf
-    """A task that runs longer is ended."""
+    limits: TaskLimits = field(default_factory=TaskLimits)
     max_frame_pixels: int = MAX_FRAME_PIXELS
     interrupted: threading.Event = field(default_factory=threading.Event)
     held: dict[int, Held] = field(default_factory=dict)
@@ -132,7 +130,7 @@ class TaskRunner:
     def _in_child(self, held: Held, temporary: Path) -> Ended:
         lease = held.lease
         spec = self._spec(lease, temporary)
-        process = TaskProcess(spec, self.logs.begin(lease), self.memory_limit_bytes, self.limit_s)
+        process = TaskProcess(spec, self.logs.begin(lease), self.limits)
 
         def progress(fraction: float, message: str) -> None:
             held.progress, held.message = fraction, message
@@ -154,6 +152,7 @@ class TaskRunner:
             self.inputs.recording(one, video=stage.reads_video, annotations=stage.reads_annotations)
             for one in lease.files
         ]
+        threads = 1 if stage.fan_out else settings.compute.threads or available_cores()
         return {
             "key": lease.key,
             "entry": stage.entry,
@@ -167,7 +166,8 @@ class TaskRunner:
             "recordings": [one.to_dict() for one in recordings],
             "out": str(temporary),
             "max_frame_pixels": self.max_frame_pixels,
-            "threads": 1 if stage.fan_out else settings.compute.threads or available_cores(),
+            "threads": threads,
+            "limits": asdict(self.limits.of_process(stage.queue, threads)),
         }
 
     def _complete(self, lease: Lease, manifest: Manifest, peak_rss_bytes: int) -> AttemptOutcome:

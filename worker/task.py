@@ -8,10 +8,9 @@ guard dies. The description of the task comes as JSON on stdin, progress and the
 
 from __future__ import annotations
 
-import ctypes
+import errno
 import importlib
 import json
-import math
 import os
 import resource
 import select
@@ -30,19 +29,29 @@ from typing import Any, NoReturn
 import psutil
 
 from core.child_environment import child_environment
-from core.errors import BladeAtlasError, DiskFull, ProgrammingError, ResourceError, error_from_dict
+from core.confinement import NetworkGuard, ProcessLimits, confine, die_with
+from core.errors import BladeAtlasError, DiskFull, ProgrammingError, ResourceError, StageFailed, error_from_dict
 from core.settings import Settings, only_declared
 from core.stage import StageResult, StageTask
 from core.videos import Recording
 from store.disk import NO_SPACE, disk_is_full
+from worker.limits import TaskLimits
 from worker.results import seal
 
 _MISTAKES = (TypeError, AttributeError, NameError, LookupError, AssertionError, ImportError, NotImplementedError)
 """Errors that code raises because it is wrong; libraries raise others on input that they cannot handle."""
+_OUT_OF_MEMORY = (
+    "bad_alloc",
+    "can't allocate memory",
+    "Cannot allocate memory",
+    "Insufficient memory",
+    "out of memory",
+)
+"""What libraries say with errors of their own kinds: of C++, of PyTorch, of the system, of OpenCV."""
+_LAST_WORDS = 4096
 _POLL_S = 0.2
 _GRACE_S = 2.0
 """Between the request to stop and the kill: nothing of an unfinished task is worth waiting longer for."""
-_PR_SET_PDEATHSIG = 1
 _PROGRESS_EVERY_S = 0.5
 
 
@@ -71,12 +80,11 @@ class Ended:
 class TaskProcess:
     """One run of `worker.task`."""
 
-    def __init__(
-        self, spec: Mapping[str, Any], log: Path, memory_limit_bytes: int = 0, limit_s: float = math.inf
-    ) -> None:
+    def __init__(self, spec: Mapping[str, Any], log: Path, limits: TaskLimits) -> None:
         self._key = str(spec["key"])
-        self._limit = memory_limit_bytes
-        self._limit_s = limit_s
+        self._limits = limits
+        self._of_process: Mapping[str, int] = spec["limits"]
+        self._log, self._log_began = log, log.stat().st_size if log.exists() else 0
         self._oom_kills = _kernel_oom_kills()
         self._last: dict[str, Any] = {}
         self._buffer = b""
@@ -179,11 +187,12 @@ class TaskProcess:
         return total
 
     def _beyond_limits(self) -> ResourceError | None:
-        if time.monotonic() - self._started > self._limit_s:
-            message = f"the task ran longer than its limit of {self._limit_s:g} s"
+        limits = self._limits
+        if time.monotonic() - self._started > limits.seconds:
+            message = f"the task ran longer than its limit of {limits.seconds:g} s"
             return ResourceError(message, code="timeout", where=self._key)
-        if self._limit > 0 and self._resident() > self._limit:
-            limit = f"{self._limit / 2**20:.0f} MiB"
+        if limits.resident_bytes > 0 and self._resident() > limits.resident_bytes:
+            limit = f"{limits.resident_bytes / 2**20:.0f} MiB"
             return ResourceError(f"the task used more memory than its limit of {limit}", code="oom", where=self._key)
         return None
 
@@ -195,8 +204,21 @@ class TaskProcess:
         number = int(self._last.get("signal", -min(0, self._process.returncode)))
         if number == signal.SIGKILL and _kernel_oom_kills() > self._oom_kills:
             return ResourceError("the system killed the task for lack of memory", code="oom", where=self._key)
+        if number == signal.SIGABRT and "bad_alloc" in self._last_words():
+            return ResourceError(_no_memory(self._of_process), code="oom", where=self._key)
+        if number == signal.SIGXCPU:
+            message = "the task used more processor time than its limit (task_cpu_seconds)"
+            return ResourceError(message, code="timeout", where=self._key)
         how = signal.Signals(number).name if number else f"exit code {self._process.returncode}"
         return ResourceError(f"the task's process died ({how})", code="worker_lost", where=self._key)
+
+    def _last_words(self) -> str:
+        """The end of what the task wrote into its log: native code that throws says there what."""
+        with suppress(OSError), self._log.open("rb") as stream:
+            size = stream.seek(0, os.SEEK_END)
+            stream.seek(max(self._log_began, size - _LAST_WORDS))
+            return stream.read().decode("utf-8", "replace")
+        return ""
 
 
 def _kernel_oom_kills() -> int:
@@ -206,13 +228,6 @@ def _kernel_oom_kills() -> int:
             if line.startswith("oom_kill "):
                 return int(line.split()[1])
     return 0
-
-
-def die_with(parent: int, with_signal: signal.Signals) -> None:
-    """Ask the kernel for `with_signal` when the parent dies; leave at once if it is dead already."""
-    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, int(with_signal), 0, 0, 0)
-    if os.getppid() != parent:
-        os._exit(1)
 
 
 class Channel:
@@ -267,6 +282,8 @@ def _stage_process(spec: dict[str, Any], channel: Channel, guard: int) -> NoRetu
     stopped: list[int] = []
     signal.signal(signal.SIGTERM, lambda number, _frame: stopped.append(number))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if confine(ProcessLimits(**spec["limits"])) == NetworkGuard.NONE:
+        sys.stderr.write("this system cannot keep the task from the network\n")
     die_with(guard, signal.SIGKILL)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     code = 0
@@ -275,7 +292,7 @@ def _stage_process(spec: dict[str, Any], channel: Channel, guard: int) -> NoRetu
     except BaseException as error:  # noqa: BLE001 - this is the border of the process: everything becomes a message
         code = 1
         traceback.print_exc()
-        channel.send({"error": describe(error, str(spec["key"]), Path(spec["out"]))})
+        channel.send({"error": describe(error, str(spec["key"]), Path(spec["out"]), spec["limits"])})
     sys.stdout.flush()
     sys.stderr.flush()
     # No interpreter shutdown: destructors of native libraries may hang or crash after the work is safe.
@@ -313,16 +330,26 @@ def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) 
     return {"digest": manifest.digest}
 
 
-def describe(error: BaseException, key: str, out: Path) -> dict[str, Any]:
+def _no_memory(limits: Mapping[str, int]) -> str:
+    """What to say of a task that got no memory."""
+    most = limits["address_bytes"]
+    why = f"; a process of it may have {most / 2**20:.0f} MiB of addresses (task_address_bytes)" if most else ""
+    return f"not enough memory for this task{why}"
+
+
+def describe(error: BaseException, key: str, out: Path, limits: Mapping[str, int]) -> dict[str, Any]:
     """An error as JSON: expected ones as they are, the others by what they mean for the runner."""
     if out.is_dir() and disk_is_full(out):
         return DiskFull("no space left on the disk of the output folder", where=key).to_dict()
     if isinstance(error, BladeAtlasError):
         return error.to_dict()
-    if isinstance(error, MemoryError):
-        return ResourceError("not enough memory for this task", code="oom", where=key).to_dict()
     cause: BaseException | None = error
     while cause is not None:
+        if isinstance(cause, MemoryError) or any(words in str(cause) for words in _OUT_OF_MEMORY):
+            return ResourceError(_no_memory(limits), code="oom", where=key).to_dict()
+        if isinstance(cause, OSError) and cause.errno == errno.EFBIG:
+            message = "the task wrote a file larger than one may be (task_file_bytes)"
+            return StageFailed(message, code="file_too_large", where=key).to_dict()
         if isinstance(cause, OSError) and cause.errno in NO_SPACE:
             reason = os.strerror(cause.errno or 0).lower()
             return DiskFull(f"the output folder cannot be written: {reason}", where=key).to_dict()

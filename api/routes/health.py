@@ -16,6 +16,7 @@ from api.limits import require_space
 from api.problems import FieldError, Refused, responses
 from api.services import Services
 from api.state import state_of
+from core.confinement import possible_guard
 
 router = APIRouter(tags=["health"])
 
@@ -34,12 +35,20 @@ class Readiness(BaseModel):
 
     model_config = ConfigDict(
         json_schema_extra={
-            "example": {"status": "ready", "checks": {"database": "ok", "artifacts": "ok", "disk": "ok"}}
+            "example": {
+                "status": "ready",
+                "checks": {"database": "ok", "artifacts": "ok", "disk": "ok"},
+                "children_network": "seccomp",
+            }
         }
     )
 
     status: Literal["ready"] = "ready"
     checks: dict[str, str] = Field(description="each check and its result")
+    children_network: str = Field(
+        description="what keeps processes of this host that read uploaded files from the network: `seccomp`, "
+        "`namespace`, or `none`, because the system allows neither"
+    )
 
 
 @router.get("/healthz", summary="Is the process alive?")
@@ -60,7 +69,7 @@ def readyz(request: Request) -> Readiness:
         errors = [FieldError(pointer=f"/checks/{name}", detail="does not answer, or has no space") for name in failed]
         detail = f"not ready: {', '.join(failed)}"
         raise Refused(HTTPStatus.SERVICE_UNAVAILABLE, "not_ready", detail, errors=errors)
-    return Readiness(checks=dict.fromkeys(checks, "ok"))
+    return Readiness(checks=dict.fromkeys(checks, "ok"), children_network=possible_guard())
 
 
 def _passes(check: Callable[[Services], None], services: Services) -> bool:

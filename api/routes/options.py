@@ -155,6 +155,11 @@ class Limits(BaseModel):
                 "probe_wait_seconds": 60.0,
                 "max_probes_waiting": 200,
                 "max_probes_waiting_per_owner": 50,
+                "task_seconds": 14400.0,
+                "task_cpu_seconds": 0.0,
+                "task_memory_bytes": 0,
+                "task_address_bytes": 68719476736,
+                "task_file_bytes": 17179869184,
                 "upload_hours": 72.0,
                 "retention_days": 30.0,
             }
@@ -185,6 +190,11 @@ class Limits(BaseModel):
     probe_wait_seconds: float = Field(description="who waits longer for that look gets 503")
     max_probes_waiting: int = Field(description="requests that wait for that look at once; more get 503")
     max_probes_waiting_per_owner: int = Field(description="the same of one owner; more get 429")
+    task_seconds: float = Field(description="a task that runs longer ends its stage with `timeout`")
+    task_cpu_seconds: float = Field(description="the same of processor time; 0 = `task_seconds` on each thread")
+    task_memory_bytes: int = Field(description="a task that uses more memory ends its stage with `oom`; 0 = no limit")
+    task_address_bytes: int = Field(description="the same of its address space, but on a GPU; 0 = no limit")
+    task_file_bytes: int = Field(description="a task that writes a larger file fails, `file_too_large`; 0 = no limit")
     upload_hours: float = Field(description="an upload that nobody used is removed after this")
     retention_days: float = Field(description="an inspection is removed so long after it ended; 0 = never")
 

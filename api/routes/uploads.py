@@ -5,19 +5,24 @@ from __future__ import annotations
 import base64
 import binascii
 from collections.abc import Mapping
+from datetime import datetime
+from email.utils import format_datetime
 from functools import partial
 from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from api.auth import Submitter
+from api.auth import Reader, Submitter
 from api.finding import is_id
+from api.paging import next_link
+from api.parameters import OneOf
 from api.problems import Refused, not_found, responses
 from api.receiving import receive_patch
 from api.state import state_of
-from store.uploads import UploadFile, UploadView
+from store.uploads import UploadFile, UploadState, UploadView
 
 VERSION = "1.0.0"
 _CONTENT_TYPE = "application/offset+octet-stream"
@@ -39,7 +44,49 @@ def speaks_tus(
 
 router = APIRouter(prefix="/v1/uploads", tags=["uploads"])
 _TUS = [Depends(speaks_tus)]
-_EXAMPLE: dict[str, Any] = {"headers": {"Upload-Offset": {"schema": {"type": "integer"}, "example": 5242880}}}
+_UNTIL: dict[str, Any] = {
+    "Upload-Expires": {"schema": {"type": "string"}, "example": "Thu, 07 May 2026 09:30:02 GMT"},
+}
+_EXAMPLE: dict[str, Any] = {"headers": {"Upload-Offset": {"schema": {"type": "integer"}, "example": 5242880}, **_UNTIL}}
+_State = Annotated[str, OneOf(UploadState)]
+_ITEM: dict[str, Any] = {
+    "id": "0b6f1e0c3f7d4f0f9a52f7f4f1f0a6c1",
+    "state": "open",
+    "length": 13107200,
+    "offset": 5242880,
+    "metadata": {"filename": "turbine.mp4"},
+    "sha256": None,
+    "created_at": "2026-05-04T09:30:02Z",
+    "updated_at": "2026-05-04T09:31:40Z",
+    "expires_at": "2026-05-07T09:30:02Z",
+    "link": "/v1/uploads/0b6f1e0c3f7d4f0f9a52f7f4f1f0a6c1",
+}
+
+
+class UploadItem(BaseModel):
+    """An upload of the account."""
+
+    model_config = ConfigDict(json_schema_extra={"example": _ITEM})
+
+    id: str
+    state: _State
+    length: int = Field(description="size of the whole file in bytes")
+    offset: int = Field(description="bytes that are safe; sending goes on from here")
+    metadata: dict[str, str] = Field(description="`Upload-Metadata`, decoded")
+    sha256: str | None = Field(description="of the whole file; null until it is known")
+    created_at: datetime
+    updated_at: datetime
+    expires_at: datetime | None = Field(description="it is removed then, finished or not; null = never")
+    link: str = Field(description="where the bytes are sent")
+
+
+class UploadList(BaseModel):
+    """One page of uploads, newest first."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {"uploads": [_ITEM], "next_cursor": None}})
+
+    uploads: list[UploadItem]
+    next_cursor: str | None = Field(description="`cursor` of the next page; null on the last. Also in `Link: rel=next`")
 
 
 @router.options("", status_code=204, summary="What this server can do", response_class=Response)
@@ -52,9 +99,41 @@ def capabilities(request: Request) -> Response:
         HTTPStatus.NO_CONTENT,
         {
             "Tus-Version": VERSION,
-            "Tus-Extension": "creation,termination",
+            "Tus-Extension": "creation,expiration,termination",
             "Tus-Max-Size": str(state_of(request).services.settings.max_upload_bytes),
         },
+    )
+
+
+@router.get("", summary="List uploads", responses=responses(400, 401, 422, 503))
+def listing(
+    request: Request,
+    response: Response,
+    caller: Reader,
+    state: Annotated[_State | None, Query(description="only these")] = None,
+    limit: Annotated[int, Query(ge=1, le=200, description="uploads on a page")] = 50,
+    cursor: Annotated[str | None, Query(max_length=500, description="`next_cursor` of the page before")] = None,
+) -> UploadList:
+    """The account's uploads that were neither given up nor have expired, newest first. No header of tus is needed."""
+    chosen = None if state is None else UploadState(state)
+    page = state_of(request).services.uploads.page(caller.owner, chosen, limit, cursor)
+    if page.cursor is not None:
+        response.headers["Link"] = next_link(request, page.cursor)
+    return UploadList(uploads=[_item(view) for view in page.uploads if not view.removed], next_cursor=page.cursor)
+
+
+def _item(upload: UploadView) -> UploadItem:
+    return UploadItem(
+        id=upload.id,
+        state=upload.state,
+        length=upload.length,
+        offset=upload.offset,
+        metadata={name: str(value) for name, value in upload.metadata.items()},
+        sha256=upload.sha256,
+        created_at=upload.created_at,
+        updated_at=upload.updated_at,
+        expires_at=upload.expires_at,
+        link=f"{router.prefix}/{upload.id}",
     )
 
 
@@ -65,7 +144,7 @@ def capabilities(request: Request) -> Response:
     response_class=Response,
     dependencies=_TUS,
     responses={
-        201: {"description": "made; `Location` is where to send the bytes"},
+        201: {"description": "made; `Location` is where to send the bytes", "headers": _UNTIL},
         **responses(400, 401, 412, 413, 429, 507),
     },
 )
@@ -86,7 +165,8 @@ def create(
     metadata = _metadata(upload_metadata or "")
     admit = partial(services.admission.admit_upload, owner=caller.owner, size=length)
     upload = services.uploads.create(caller.owner, length, metadata, admit)
-    return _answer(HTTPStatus.CREATED, {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": "0"})
+    headers = {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": "0", **_expiry(upload)}
+    return _answer(HTTPStatus.CREATED, headers)
 
 
 @router.head(
@@ -100,6 +180,7 @@ def offset(request: Request, caller: Submitter, upload_id: str) -> Response:
     """The offset to go on from: what was committed and is on disk."""
     upload = _find(request, upload_id, caller.owner)
     headers = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.length), "Cache-Control": "no-store"}
+    headers |= _expiry(upload)
     if upload.metadata:
         headers["Upload-Metadata"] = _encoded(upload.metadata)
     return _answer(HTTPStatus.OK, headers)
@@ -130,7 +211,7 @@ async def send(
     declared = _number(upload_offset, "Upload-Offset")
     upload = await run_in_threadpool(_find, request, upload_id, caller.owner)
     reached = await receive_patch(request, state_of(request), upload, declared)
-    return _answer(HTTPStatus.NO_CONTENT, {"Upload-Offset": str(reached)})
+    return _answer(HTTPStatus.NO_CONTENT, {"Upload-Offset": str(reached), **_expiry(upload)})
 
 
 @router.delete(
@@ -160,6 +241,11 @@ def _find(request: Request, upload_id: str, owner: str) -> UploadView:
     if upload.removed:
         raise Refused(HTTPStatus.GONE, "gone", "this upload was removed")
     return upload
+
+
+def _expiry(upload: UploadView) -> dict[str, str]:
+    """tus's header of the extension `expiration`; nothing for an upload that does not expire."""
+    return {} if upload.expires_at is None else {"Upload-Expires": format_datetime(upload.expires_at, usegmt=True)}
 
 
 def _number(text: str | None, header: str) -> int:

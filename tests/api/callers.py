@@ -47,6 +47,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("HEAD", f"{_ONE}/viewer/{{path}}"): Scope.READ,
     ("GET", f"{_ONE}/models/{{model}}/viewer/{{path}}"): Scope.READ,
     ("HEAD", f"{_ONE}/models/{{model}}/viewer/{{path}}"): Scope.READ,
+    ("GET", "/v1/uploads"): Scope.READ,
     ("POST", "/v1/uploads"): Scope.SUBMIT,
     ("HEAD", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
     ("PATCH", "/v1/uploads/{upload_id}"): Scope.SUBMIT,

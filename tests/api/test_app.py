@@ -12,6 +12,7 @@ from sqlalchemy.exc import OperationalError
 
 from api.app import create_app
 from api.problems import MEDIA_TYPE, status_of
+from core.confinement import possible_guard
 from core.errors import BadInput, BladeAtlasError, DiskFull, NoReconstruction, ResourceError
 from core.settings import PRESET_NAMES, make_settings, option_names
 from store.uploads import UploadLocked
@@ -21,7 +22,8 @@ from tests.api.conftest import Backend, client_of
 def test_health_and_readiness(client: TestClient) -> None:
     assert client.get("/healthz").json() == {"status": "ok"}
     checks = {"database": "ok", "artifacts": "ok", "disk": "ok"}
-    assert client.get("/readyz").json() == {"status": "ready", "checks": checks}
+    guard = possible_guard()
+    assert client.get("/readyz").json() == {"status": "ready", "checks": checks, "children_network": guard}
 
 
 def test_a_server_that_cannot_take_work_is_not_ready(backend: Backend) -> None:

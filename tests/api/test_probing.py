@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import asyncio
+import os
+import socket
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -17,6 +20,7 @@ from fastapi.testclient import TestClient
 
 from api.app import create_app
 from api.probing import Prober
+from core.errors import BadInput
 from core.settings import make_settings
 from core.videos import Recording
 from store.settings import DeploymentSettings
@@ -153,6 +157,7 @@ def test_limits_are_told(backend: Backend) -> None:
         *("max_active", "max_active_per_owner", "max_open_uploads", "max_open_uploads_per_owner"),
         *("max_frame_pixels", "max_video_frames", "max_video_seconds", "probe_seconds", "probe_wait_seconds"),
         *("max_probes_waiting", "max_probes_waiting_per_owner"),
+        *("task_seconds", "task_cpu_seconds", "task_memory_bytes", "task_address_bytes", "task_file_bytes"),
     ):
         assert told[name] == getattr(settings, name), name
 
@@ -178,3 +183,21 @@ def test_a_look_has_no_credential(backend: Backend, monkeypatch: pytest.MonkeyPa
     environment = asyncio.run(watch())
     assert "PATH=" in environment
     assert "marked-credential" not in environment
+
+
+def test_a_look_reaches_nobody(backend: Backend, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Nor the server's memory: where that runs as root its child has given up what reading it takes."""
+    monkeypatch.setattr("api.probing._ENTRY", "tests.api.reaching_probe")
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        listening.listen()
+        video = tmp_path / "video"
+        video.write_text(str(listening.getsockname()[1]))
+        with socket.create_connection(listening.getsockname(), timeout=5):
+            pass  # it can be reached
+        with pytest.raises(BadInput) as said:
+            asyncio.run(Prober(backend.services.settings).check("me", [Recording(video)], make_settings()))
+    outcomes = {"port": "PermissionError"}
+    if os.getuid() == 0:
+        outcomes["parent"] = "PermissionError"
+    assert outcomes.items() <= ast.literal_eval(said.value.message).items()

@@ -64,7 +64,7 @@ def test_options_tell_what_the_server_can_do(client: TestClient) -> None:
     answer = client.options("/v1/uploads")
     assert answer.status_code == 204
     assert answer.headers["Tus-Version"] == "1.0.0"
-    assert answer.headers["Tus-Extension"] == "creation,termination"
+    assert answer.headers["Tus-Extension"] == "creation,expiration,termination"
     assert int(answer.headers["Tus-Max-Size"]) > 1 << 30
 
 

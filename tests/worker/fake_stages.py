@@ -7,10 +7,12 @@ noted in ``journal.txt``, every end in the same file.
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import hashlib
 import json
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -113,6 +115,8 @@ def _behave(task: StageTask) -> None:
         return
     if wish.get("tell"):
         (task.recordings[0].video.parent / "told.json").write_text(json.dumps(_what_a_child_knows()))
+    if "reach" in wish:
+        (task.recordings[0].video.parent / "reached.txt").write_text(_reach(wish["reach"]))
     if wish.get("helper"):
         helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(100)"])
         _note(task, f"helper {helper.pid}")
@@ -123,6 +127,12 @@ def _behave(task: StageTask) -> None:
         ballast = bytearray(wish["megabytes"] << 20)
         _pass_time(task, 5.0, True)
         del ballast
+    if "native_megabytes" in wish:
+        ctypes.CDLL("libstdc++.so.6")._Znwm(ctypes.c_size_t(wish["native_megabytes"] << 20))  # operator new
+    if "file_megabytes" in wish:
+        (task.out / "large").write_bytes(bytes(wish["file_megabytes"] << 20))
+    while "burn" in wish:
+        pass
     if "reads" in wish:
         getattr(task.settings, wish["reads"])
     errors: dict[str, Exception] = {
@@ -137,6 +147,15 @@ def _behave(task: StageTask) -> None:
         raise errors[wish["raise"]]
 
 
+def _reach(port: int) -> str:
+    """What becomes of a connection to a port of this machine."""
+    try:
+        socket.create_connection(("127.0.0.1", port), timeout=5).close()
+    except OSError as error:
+        return type(error).__name__
+    return "connected"
+
+
 def _what_a_child_knows() -> dict[str, Any]:
     """Everything that this process and its guard were given: environments, also as they began, and the document."""
     frame = sys._getframe()
@@ -147,9 +166,17 @@ def _what_a_child_knows() -> dict[str, Any]:
         "environment": dict(os.environ),
         "document": frame.f_locals["spec"],
         "initial": Path("/proc/self/environ").read_text(),
-        "guard": Path(f"/proc/{os.getppid()}/environ").read_text(),
+        "guard": _environment(os.getppid()),
         "arguments": Path(f"/proc/{os.getppid()}/cmdline").read_text(),
     }
+
+
+def _environment(process: int) -> str:
+    """As another process began; of root's processes those with fewer rights read nothing."""
+    try:
+        return Path(f"/proc/{process}/environ").read_text()
+    except PermissionError:
+        return "not to be read"
 
 
 def _pass_time(task: StageTask, seconds: float, deaf: bool) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -30,6 +31,18 @@ def server(place: Workplace, tmp_path: Path) -> Iterator[Server]:
         db = Database(url.set(password=MARK))
         yield Server(place, db)
         db.close()
+
+
+def test_a_stage_reaches_nobody(place: Workplace) -> None:
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        listening.listen()
+        port = listening.getsockname()[1]
+        with socket.create_connection(("127.0.0.1", port), timeout=5):
+            pass  # it can be reached
+        place.control(split={"reach": port})
+        assert place.run().state == "succeeded"
+    assert (place.video.parent / "reached.txt").read_text() == "PermissionError"
 
 
 @pytest.mark.service("postgresql")

@@ -291,6 +291,34 @@ def test_a_task_above_its_time_limit_is_ended_as_timeout(place: Workplace, monke
     assert place.started().count("last") == 1
 
 
+@pytest.mark.parametrize(
+    ("variable", "value", "wish", "code", "words"),
+    [
+        ("TASK_ADDRESS_BYTES", 2 << 30, {"megabytes": 4000}, "oom", "2048 MiB of addresses (task_address_bytes)"),
+        ("TASK_ADDRESS_BYTES", 2 << 30, {"native_megabytes": 4000}, "oom", "2048 MiB of addresses"),
+        ("TASK_CPU_SECONDS", 2, {"burn": True}, "timeout", "processor time"),
+        ("TASK_FILE_BYTES", 1 << 20, {"file_megabytes": 2}, "file_too_large", "task_file_bytes"),
+    ],
+)
+def test_a_task_beyond_a_limit_of_the_kernel_fails_once_and_says_which(
+    place: Workplace,
+    monkeypatch: pytest.MonkeyPatch,
+    variable: str,
+    value: int,
+    wish: dict[str, Any],
+    code: str,
+    words: str,
+) -> None:
+    monkeypatch.setenv(f"BLADEATLAS_{variable}", str(value))
+    place.control(last=wish)
+    outcome = place.run()
+    assert (outcome.state, outcome.failed_stage) == ("partial", "last")
+    assert outcome.error is not None
+    assert outcome.error.code == code
+    assert words in outcome.error.message
+    assert place.started().count("last") == 1
+
+
 def test_results_whose_files_vanished_are_made_again(place: Workplace) -> None:
     place.run()
     place.started()

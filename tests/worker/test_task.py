@@ -10,6 +10,8 @@ import pytest
 from core.errors import BadInput, StageFailed, error_from_dict
 from worker.task import describe
 
+_LIMITS = {"address_bytes": 3 << 30}
+
 
 def raised(error: BaseException, cause: BaseException | None = None) -> BaseException:
     try:
@@ -23,6 +25,9 @@ def raised(error: BaseException, cause: BaseException | None = None) -> BaseExce
     [
         (BadInput("no video", code="not_a_video"), "BadInput", "not_a_video", False),
         (MemoryError(), "ResourceError", "oom", True),
+        (RuntimeError("DefaultCPUAllocator: can't allocate memory"), "ResourceError", "oom", True),
+        (raised(RuntimeError("no model"), MemoryError()), "ResourceError", "oom", True),
+        (OSError(errno.EFBIG, "File too large"), "StageFailed", "file_too_large", False),
         (OSError(errno.ENOSPC, "full"), "DiskFull", "disk_full", False),
         (OSError(errno.EDQUOT, "quota"), "DiskFull", "disk_full", False),
         (raised(RuntimeError("cannot write"), OSError(errno.EROFS, "x")), "DiskFull", "disk_full", False),
@@ -33,7 +38,7 @@ def raised(error: BaseException, cause: BaseException | None = None) -> BaseExce
 def test_errors_cross_the_border_by_what_they_mean(
     tmp_path: Path, error: BaseException, kind: str, code: str, retryable: bool
 ) -> None:
-    record = describe(error, "join", tmp_path)
+    record = describe(error, "join", tmp_path, _LIMITS)
     assert (record["kind"], record["code"], record["retryable"]) == (kind, code, retryable)
     rebuilt = error_from_dict(record)
     assert (type(rebuilt).__name__, rebuilt.code) == (kind, code)
@@ -41,4 +46,4 @@ def test_errors_cross_the_border_by_what_they_mean(
 
 def test_any_error_on_a_full_disk_is_the_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("worker.task.disk_is_full", lambda _folder: True)
-    assert describe(StageFailed("could not read model"), "join", tmp_path)["code"] == "disk_full"
+    assert describe(StageFailed("could not read model"), "join", tmp_path, _LIMITS)["code"] == "disk_full"

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from datetime import timedelta
 
-from sqlalchemy import ColumnElement, delete, or_, select
+from sqlalchemy import ColumnElement, and_, delete, or_, select
 from sqlalchemy.orm import Session
 
 from store.account_models import AuditEntry, RequestCount, WebSession
@@ -88,6 +88,11 @@ class Retention:
         """The same of inspections that are not over."""
         with self.db.read() as session:
             return _inputs(session, Inspection.state.in_(ACTIVE_INSPECTION))
+
+    def has_input(self, owner: str, sha256: str) -> bool:
+        """True when an inspection of this account that was not deleted has a file with this hash among its inputs."""
+        with self.db.read() as session:
+            return sha256 in _inputs(session, and_(Inspection.owner == owner, Inspection.deleted_at.is_(None)), sha256)
 
     def folders_in_use(self) -> set[str]:
         """Folders of the artifact store with files that are shown, or may be any moment."""
@@ -170,11 +175,14 @@ class Retention:
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))
 
 
-def _inputs(session: Session, which: ColumnElement[bool]) -> set[str]:
-    """Hashes of the input files of the inspections of which `which` is true."""
+def _inputs(session: Session, which: ColumnElement[bool], sha256: str | None = None) -> set[str]:
+    """Hashes of the input files of the inspections of which `which` is true, or only of those with one such file."""
     first = select(Inspection.video_sha256, Inspection.annotations_sha256).where(which)
     others = select(FurtherVideo.video_sha256, FurtherVideo.annotations_sha256)
     others = others.join(Inspection, Inspection.id == FurtherVideo.inspection_id).where(which)
+    if sha256 is not None:
+        first = first.where(or_(Inspection.video_sha256 == sha256, Inspection.annotations_sha256 == sha256))
+        others = others.where(or_(FurtherVideo.video_sha256 == sha256, FurtherVideo.annotations_sha256 == sha256))
     return {sha256 for query in (first, others) for row in session.execute(query) for sha256 in row if sha256}
 
 

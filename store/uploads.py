@@ -24,6 +24,7 @@ from sqlalchemy import and_, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.errors import BladeAtlasError, DiskFull
+from core.fingerprint import digest_of_file
 from store.cursors import moment_cursor, read_moment_cursor
 from store.db import Database
 from store.disk import NO_SPACE, sync_path
@@ -205,12 +206,41 @@ class Uploads:
 
         `admit` is called in the transaction that makes the row; what it raises leaves nothing behind.
         """
+        return self._create(lambda path: path.touch(mode=0o600, exist_ok=False), owner, length, metadata, admit)
+
+    def create_from(
+        self,
+        source: Path,
+        sha256: str,
+        owner: str,
+        metadata: Mapping[str, str],
+        admit: Callable[[Session], None] | None = None,
+    ) -> UploadView:
+        """A finished upload of a file that never changes and lies on the same disk; not a byte is copied.
+
+        Raises:
+            OSError: the file was removed, or the disk cannot give it a second name.
+        """
+        os.utime(source)  # a new name with an old time would look to the cleaner like one that belongs to nothing
+        length = source.stat().st_size
+        return self._create(lambda path: path.hardlink_to(source), owner, length, metadata, admit, sha256)
+
+    def _create(
+        self,
+        begin: Callable[[Path], None],
+        owner: str,
+        length: int,
+        metadata: Mapping[str, str],
+        admit: Callable[[Session], None] | None,
+        sha256: str | None = None,
+    ) -> UploadView:
+        """Make the file with `begin`, then the row; a file whose hash is known is whole."""
         upload_id = uuid.uuid4().hex
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.path(upload_id).touch(mode=0o600, exist_ok=False)
+        begin(self.path(upload_id))
         try:
             sync_path(self.folder)
-            return self._insert(upload_id, owner, length, metadata, admit)
+            return self._insert(upload_id, owner, length, metadata, admit, sha256)
         except BaseException:
             self.path(upload_id).unlink(missing_ok=True)
             raise
@@ -222,6 +252,7 @@ class Uploads:
         length: int,
         metadata: Mapping[str, str],
         admit: Callable[[Session], None] | None,
+        sha256: str | None,
     ) -> UploadView:
         with self.db.write() as session:
             if admit is not None:
@@ -231,7 +262,8 @@ class Uploads:
                 id=upload_id,
                 owner=owner,
                 length=length,
-                offset=0,
+                offset=0 if sha256 is None else length,
+                sha256=sha256,
                 upload_metadata=dict(metadata),
                 created_at=now,
                 updated_at=now,
@@ -272,6 +304,40 @@ class Uploads:
         except FileNotFoundError:
             return replace(view, offset=0, removed=True)
         return replace(view, offset=min(view.offset, size))
+
+    def find_content(self, owner: str, length: int, sha256: str) -> UploadView | None:
+        """A finished upload of this owner with this content, kept from now on as long as a new one; None without any.
+
+        One whose hash is not known yet is read for it.
+        """
+        with self.db.read() as session:
+            alive = (Upload.removed_at.is_(None), Upload.expires_at > self.db.now(session))
+            whole = (Upload.owner == owner, Upload.length == length, Upload.offset == length)
+            rows = session.scalars(select(Upload).where(*whole, *alive).order_by(Upload.expires_at.desc())).all()
+        for row in sorted(rows, key=lambda one: one.sha256 is None):
+            if row.sha256 in (sha256, None) and self._holds(row, sha256) and self._renew(row.id):
+                return self.find(row.id, owner)
+        return None
+
+    def _holds(self, row: Upload, sha256: str) -> bool:
+        """True when all of the upload's file is there and hashes so; a hash that was not known is noted."""
+        path = self.path(row.id)
+        try:
+            if path.stat().st_size != row.length:
+                return False
+            found = row.sha256 or digest_of_file(path)
+        except FileNotFoundError:
+            return False
+        if row.sha256 is None:
+            self.commit(row.id, row.length, found)
+        return found == sha256
+
+    def _renew(self, upload_id: str) -> bool:
+        """Begin the time of an upload anew; False when it was removed meanwhile."""
+        with self.db.write() as session:
+            where, now = (Upload.id == upload_id, Upload.removed_at.is_(None)), self.db.now(session)
+            values = {"updated_at": now, "expires_at": now + timedelta(hours=self.keep_hours)}
+            return changed(session, update(Upload).where(*where).values(**values))
 
     def commit(self, upload_id: str, offset: int, sha256: str | None = None) -> bool:
         """Note that `offset` bytes are on disk for certain; False when the upload was removed meanwhile."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from datetime import datetime
 from email.utils import format_datetime
 from functools import partial
@@ -13,6 +15,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
+from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
 from api.auth import Reader, Submitter
@@ -20,14 +23,19 @@ from api.finding import is_id
 from api.paging import next_link
 from api.parameters import OneOf
 from api.problems import Refused, not_found, responses
-from api.receiving import receive_patch
+from api.receiving import on_disk, receive_patch
+from api.services import Services
 from api.state import state_of
+from store.files import input_key
+from store.housekeeping import Retention
 from store.uploads import UploadFile, UploadState, UploadView
 
 VERSION = "1.0.0"
 _CONTENT_TYPE = "application/offset+octet-stream"
 _MAX_METADATA = 8192
 _LARGEST = 1 << 62
+_CHECKSUM = re.compile(r"sha256 ([A-Za-z0-9+/]{43}=)")
+_SHA256_BYTES = 32
 
 
 def speaks_tus(
@@ -144,16 +152,27 @@ def _item(upload: UploadView) -> UploadItem:
     response_class=Response,
     dependencies=_TUS,
     responses={
+        200: {
+            "description": "this account sent the file of this checksum before: `Location` is its finished upload",
+            "headers": _UNTIL,
+        },
         201: {"description": "made; `Location` is where to send the bytes", "headers": _UNTIL},
         **responses(400, 401, 412, 413, 429, 507),
     },
 )
-def create(
+async def create(
     request: Request,
     caller: Submitter,
     upload_length: Annotated[str | None, Header(description="size of the file in bytes", examples=["13107200"])] = None,
     upload_metadata: Annotated[
         str | None, Header(description="`name base64,name base64`", examples=["filename dHVyYmluZS5tcDQ="])
+    ] = None,
+    upload_checksum: Annotated[
+        str | None,
+        Header(
+            description="`sha256 base64` of the whole file: one that this account sent before need not be sent again",
+            examples=["sha256 n4bQgYhMfWWaL+qgxVrQFaO/TxsrC4Is0V1sFbDwCgg="],
+        ),
     ] = None,
 ) -> Response:
     """Make an upload of a known size; 413 and 507 when the server or its disk do not take it, 429 beyond a limit."""
@@ -164,9 +183,41 @@ def create(
         raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "too_large", detail, where="Upload-Length")
     metadata = _metadata(upload_metadata or "")
     admit = partial(services.admission.admit_upload, owner=caller.owner, size=length)
-    upload = services.uploads.create(caller.owner, length, metadata, admit)
-    headers = {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": "0", **_expiry(upload)}
-    return _answer(HTTPStatus.CREATED, headers)
+    if upload_checksum is not None:
+        sha256 = _sha256(upload_checksum)
+        known = await on_disk(partial(_sent_before, services, caller.owner, length, sha256, metadata, admit))
+        if known is not None:
+            return _answer(HTTPStatus.OK, _place(known))
+    upload = await run_in_threadpool(services.uploads.create, caller.owner, length, metadata, admit)
+    return _answer(HTTPStatus.CREATED, _place(upload))
+
+
+def _place(upload: UploadView) -> dict[str, str]:
+    return {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": str(upload.offset), **_expiry(upload)}
+
+
+def _sent_before(
+    services: Services,
+    owner: str,
+    length: int,
+    sha256: str,
+    metadata: Mapping[str, str],
+    admit: Callable[[Session], None],
+) -> UploadView | None:
+    """A finished upload of a file that this account sent before, be it as an upload or in a form; None without any.
+
+    What others sent is not looked at, so an answer says nothing about it.
+    """
+    known = services.uploads.find_content(owner, length, sha256)
+    folder = services.artifacts.folder
+    if known is not None or folder is None or not Retention(services.db).has_input(owner, sha256):
+        return known
+    for role in ("video", "annotations"):
+        path = folder / input_key(sha256, role)
+        with suppress(OSError):  # removed in this moment, or on another disk: then it is sent once more
+            if path.stat().st_size == length:
+                return services.uploads.create_from(path, sha256, owner, metadata, admit)
+    return None
 
 
 @router.head(
@@ -252,6 +303,16 @@ def _number(text: str | None, header: str) -> int:
     if text is None or not (text.isascii() and text.isdigit() and len(text) < 20) or int(text) > _LARGEST:
         raise Refused(HTTPStatus.BAD_REQUEST, "bad_header", f"{header} must be a whole number of bytes", where=header)
     return int(text)
+
+
+def _sha256(text: str) -> str:
+    """The hash of ``sha256 base64`` in hexadecimal; 400 for what is not of this form."""
+    form = _CHECKSUM.fullmatch(text)
+    digest = base64.b64decode(form[1]) if form else b""
+    if len(digest) != _SHA256_BYTES:
+        detail = "Upload-Checksum must be `sha256 base64value`"
+        raise Refused(HTTPStatus.BAD_REQUEST, "bad_header", detail, where="Upload-Checksum")
+    return digest.hex()
 
 
 def _metadata(text: str) -> dict[str, str]:

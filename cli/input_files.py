@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from core.annotations.foreign.archive import packed_folder
+from core.calibration.files import read_calibration
 
 OPTION = "input.annotation_format"
 
@@ -34,8 +35,6 @@ def calibration_options(path: Path | None) -> dict[str, object]:
     """The options that a calibration file stands for; none without one."""
     if path is None:
         return {}
-    from core.calibration.files import read_calibration  # loads SciPy, which few commands need
-
     return read_calibration(path).options()
 
 

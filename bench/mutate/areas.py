@@ -64,9 +64,9 @@ AREAS: Mapping[str, Area] = {
     "points": Area(
         ("core/sparse/points.py", "core/sparse/tracks.py", "core/sparse/triangulation.py"),
         (
-            "tests/core/sparse/test_points.py",
-            "tests/core/sparse/test_tracks.py",
             "tests/core/sparse/test_triangulation.py",
+            "tests/core/sparse/test_tracks.py",
+            "tests/core/sparse/test_points.py",
         ),
     ),
 }

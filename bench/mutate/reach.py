@@ -34,6 +34,8 @@ def pytest_runtest_call(item):
     note(item, "call")
 """
 """Names in coverage's data the test that runs. Setting up is told apart: what it makes serves later tests too."""
+TRACERS = ("ctrace", "pytrace")
+"""What coverage traces lines with, the faster one first; extension libraries of an area may crash under either."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def pytest_arguments(tests: Sequence[str]) -> list[str]:
 
 
 def measure(root: Path, modules: Sequence[str], tests: Sequence[str]) -> Reach:
-    """Run the tests once.
+    """Run the tests once under coverage; when its tracers crash them, without, and every test counts for every line.
 
     Raises:
         BadInput: a test fails without any change.
@@ -99,23 +101,37 @@ def measure(root: Path, modules: Sequence[str], tests: Sequence[str]) -> Reach:
     (root / "reach_plugin.py").write_text(PLUGIN)
     (root / "reach.ini").write_text(f"[run]\ndata_file = {root / 'reach.data'}\ninclude = {','.join(modules)}\n")
     cover = [sys.executable, "-m", "coverage"]
-    run = [*cover, "run", "--rcfile=reach.ini", "-m", "pytest", "-p", "reach_plugin", "--durations=0", "-vv"]
-    ended = subprocess.run(
-        [*run, *pytest_arguments(tests)], cwd=root, env=environment(root), capture_output=True, text=True, check=False
-    )
+    traced = [*cover, "run", "--rcfile=reach.ini", "-m", "pytest", "-p", "reach_plugin"]
+    for tracer in TRACERS:
+        ended = _run(root, traced, tests, {"COVERAGE_CORE": tracer})
+        if ended.returncode >= 0:
+            break
+    crashed = ended.returncode < 0
+    if crashed:
+        ended = _run(root, [sys.executable, "-m", "pytest"], tests, {})
     if ended.returncode != 0:
         raise BadInput(f"the tests fail without any change:\n{ended.stdout[-2000:]}{ended.stderr[-2000:]}")
+    sources = {module: (root / module).read_bytes() for module in modules}
+    if crashed:
+        every = {module: frozenset(range(1, source.count(b"\n") + 2)) for module, source in sources.items()}
+        return Reach({}, every, _seconds(ended.stdout), tests)
     subprocess.run(
         [*cover, "json", "--rcfile=reach.ini", "--show-contexts", "-q", "-o", "reach.json"],
         cwd=root, env=environment(root), check=True,
     )  # fmt: skip
     report = json.loads((root / "reach.json").read_text())
-    return Reach(
-        _tests_of(report),
-        {module: static_lines((root / module).read_bytes()) for module in modules},
-        _seconds(ended.stdout),
-        tests,
-    )
+    lines = {module: static_lines(source) for module, source in sources.items()}
+    return Reach(_tests_of(report), lines, _seconds(ended.stdout), tests)
+
+
+def _run(
+    root: Path, command: Sequence[str], tests: Sequence[str], variables: Mapping[str, str]
+) -> subprocess.CompletedProcess[str]:
+    """The tests, with the time of each; the code is negative when a signal ended them."""
+    return subprocess.run(
+        [*command, "--durations=0", "-vv", *pytest_arguments(tests)],
+        cwd=root, env={**environment(root), **variables}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
 
 
 def _tests_of(report: Mapping[str, object]) -> dict[tuple[str, int], list[str]]:

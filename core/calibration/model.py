@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from core.errors import BadInput
 from core.geometry.boxes import in_box
@@ -76,6 +75,8 @@ def refitted(lens: Lens, k3: float, size_px: tuple[int, int], where: str) -> Len
         BadInput: `bad_calibration` when it is more than `MAX_REFIT_PX` off somewhere in the picture, or when the
             given lens turns back within it.
     """
+    from scipy.optimize import least_squares  # half a second to load; `api` reads calibrations and seldom fits one
+
     corner = np.hypot(max(lens.cx, size_px[0] - lens.cx) / lens.fx, max(lens.cy, size_px[1] - lens.cy) / lens.fy)
     # Where the picture of a strong barrel lens ends, the tangents are far larger than the distances in the picture.
     side = np.linspace(-3.0 * corner, 3.0 * corner, _GRID)

@@ -144,7 +144,7 @@ def test_status_of_errors(error: BladeAtlasError, status: int) -> None:
 
 def test_no_vision_library_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BLADEATLAS_DATA_DIR", str(tmp_path / "data"))
-    names = ["torch", "kornia", "pycolmap", "open3d", "cv2", "av", "numba"]
+    names = ["torch", "kornia", "pycolmap", "open3d", "cv2", "av", "numba", "scipy"]
     code = f"import sys, api.app; api.app.create_app(); print([n for n in {names} if n in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

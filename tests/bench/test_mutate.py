@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from bench.mutate.areas import AREAS
-from bench.mutate.command import draw
+from bench.mutate.areas import AREAS, Area
+from bench.mutate.command import Fate, draw, judge
 from bench.mutate.mutants import mutants_of
-from bench.mutate.reach import Reach, static_lines
+from bench.mutate.reach import Reach, measure, static_lines
 
 ROOT = Path(__file__).parents[2]
 
@@ -75,3 +76,60 @@ def test_the_draw_is_the_same_each_time() -> None:
     assert len(set(drawn)) == 60
     assert drawn == draw(ROOT, area, 60, 0)
     assert drawn != draw(ROOT, area, 60, 1)
+
+
+CODE = """\
+def half(a):
+    return a / 2
+
+
+def unused(a):
+    return a * 3
+"""
+CRASH = """\
+import os, signal, sys, time
+
+from code_under_test import half
+
+if type(getattr(sys.gettrace(), "__self__", sys.gettrace())).__name__ in {tracers}:
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def test_half():
+    time.sleep(0.02)
+    if half(6) == 12:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    assert half(6) == 3
+"""
+
+
+def repository(root: Path, *tracers: str) -> Path:
+    """A repository whose tests crash under these tracers of lines, and when half of 6 is 12."""
+    (root / "bench" / "mutate").mkdir(parents=True)
+    (root / "code_under_test.py").write_text(CODE)
+    (root / "test_it.py").write_text(CRASH.replace("{tracers}", repr(tracers)))
+    subprocess.run(["git", "init", "-q"], cwd=root, check=True)
+    return root
+
+
+@pytest.mark.parametrize(
+    ("tracers", "called"),
+    [((), ["test_it.py::test_half"]), (("CTracer",), ["test_it.py::test_half"]), (("CTracer", "PyTracer"), None)],
+)
+def test_tests_that_crash_under_a_tracer_are_measured_without_it(
+    tmp_path: Path, tracers: tuple[str, ...], called: list[str] | None
+) -> None:
+    reach = measure(repository(tmp_path, *tracers), ["code_under_test.py"], ["test_it.py"])
+    assert reach.tests_for("code_under_test.py", 2, 2) == (called or ["test_it.py"])
+    assert reach.tests_for("code_under_test.py", 6, 6) == ([] if called else ["test_it.py"])
+    assert list(reach.seconds) == ["test_it.py"]
+
+
+def test_a_mutant_that_crashes_its_tests_is_killed(tmp_path: Path) -> None:
+    root = repository(tmp_path / "root")
+    area = Area(("code_under_test.py",), ("test_it.py",))
+    verdicts = judge(root, tmp_path / "work", area, draw(root, area, 60, 0), 60.0)
+    fates = {verdict.text.split("+ ")[1]: verdict.fate for verdict in verdicts}
+    assert fates["return a * 2"] == Fate.KILLED, "ended by a signal"
+    assert fates["return a / 3"] == Fate.KILLED
+    assert fates["return a * 4"] == Fate.UNREACHED

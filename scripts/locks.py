@@ -79,7 +79,7 @@ def main() -> int:
     lines, needed = installed(), closure(declared(project))
     bad = [line for name, line in lines.items() if not _PLAIN.fullmatch(line) or name == "torchvision"]
     if bad:
-        print("lock: these do not belong into a lock:", *bad, sep="\n", file=sys.stderr)
+        sys.stderr.write("\n".join(["lock: these do not belong into a lock:", *bad, ""]))
         return 1
     made = "Written by `make lock`, installed by scripts/setup.sh."
     heads = {

@@ -21,7 +21,7 @@ from core.states import AttemptOutcome
 from store.db import Database, open_sqlite
 from store.models import Attempt
 
-SEARCH = ("coarse", "refine")
+SEARCH = ("coarse", "section", "refine")
 SEARCH_LIMIT_S = 900.0
 MANY_WINDOWS = {
     "camera.fov_deg": 85.0,

@@ -25,7 +25,7 @@ lint: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml docker-compose.s3.yml
 
 docs: setup ## build the documentation into out/site; a broken link or a page that is in no menu fails
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
@@ -71,8 +71,8 @@ mutate: setup ## change the code of AREA (placement, defects, thesis, scene, ann
 versions: setup ## record the code behind each stage's version (SAME="how results were compared", when they are the same)
 	$(BIN)/python -m scripts.stage_versions --same "$(SAME)"
 
-lock: setup ## write requirements.lock from .venv
-	scripts/lock.sh
+lock: setup ## write requirements.lock and requirements-dev.lock from .venv
+	$(BIN)/python -m scripts.locks
 
 clean: ## remove outputs and caches, keep .venv
 	rm -rf out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

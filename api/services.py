@@ -86,7 +86,7 @@ def _results(settings: DeploymentSettings) -> ArtifactStore:
     """The part of the artifact store that holds results."""
     root = settings.artifacts()
     if isinstance(root, str):
-        return ArtifactStore(f"{root.rstrip('/')}/results", **settings.artifacts_options)
+        return ArtifactStore(f"{root.rstrip('/')}/results", **settings.storage_options())
     return ArtifactStore(root / "results")
 
 

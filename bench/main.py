@@ -13,6 +13,7 @@ from bench.mutate import command as mutate
 from bench.real import command as real
 from bench.scenes import command as scenes
 from bench.scenes import variants_command as variants
+from bench.service import simulate
 from bench.soak import command as soak
 from core.errors import BadInput, BladeAtlasError
 
@@ -45,6 +46,11 @@ def make_parser() -> argparse.ArgumentParser:
     service_parser = commands.add_parser("service", help="time uploads, downloads, many clients, and the queue")
     measurements.add_service_arguments(service_parser)
     service_parser.set_defaults(run=measurements.service)
+    simulate_parser = commands.add_parser(
+        "simulate", help="replay recorded inspections on many workers, by a set clock"
+    )
+    simulate.add_arguments(simulate_parser)
+    simulate_parser.set_defaults(run=simulate.command)
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)

@@ -200,6 +200,7 @@ def _serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     worker.add_argument("--queues", default="cpu,gpu", metavar="cpu,gpu", help="kinds of tasks to run (both)")
     worker.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
     worker.add_argument("--check", action="store_true", help="only say whether a worker of this host is alive")
+    _add(commands, "init", "bring tables and artifact store up and, once, print the first API key", epilog=settings)
 
 
 def _add(

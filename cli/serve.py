@@ -118,7 +118,7 @@ def _background(
     cleaning = Periodic("uploads", uploads.round, settings.sweep_s)
     _run(running, cleaning)
     if settings.broker_url:
-        queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
+        queue = TaskQueue(settings.broker(), settings.visibility_timeout_s)
         sender = Periodic("queue", partial(queue.announce, Announcements(database)), settings.sweep_s)
         _run(running, sender)
         return lambda _inspection_id: sender.nudge()

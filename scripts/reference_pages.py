@@ -18,6 +18,7 @@ from typing import Any
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
+from pydantic import SecretStr
 
 from api.app import create_app
 from api.services import services_from
@@ -26,7 +27,7 @@ from cli.arguments import parser
 from core.settings import PRESET_NAMES, Settings
 from core.settings.base import Group
 from core.settings.describe import OptionInfo, describe_options
-from store.settings import DeploymentSettings
+from store.settings import SECRETS, DeploymentSettings
 
 ROOT = Path(__file__).parents[1]
 INCLUDE = re.compile(r"<!-- include README\.md: ([\w -]+) -->")
@@ -110,17 +111,23 @@ def environment_page() -> str:
     rows = []
     for name, field in DeploymentSettings.model_fields.items():
         default = field.get_default(call_default_factory=False)
-        shown = "empty" if default in ("", {}) else f"`{default:,}`" if isinstance(default, int) else f"`{default}`"
-        rows.append((f"`BLADEATLAS_{name.upper()}`", shown, str(field.description)))
+        shown = "empty" if default in ("", {}, SecretStr("")) else _default(default)
+        file = "; also in a file, `_FILE`" if name in SECRETS else ""
+        rows.append((f"`BLADEATLAS_{name.upper()}`", shown, f"{field.description}{file}"))
     return "\n".join(
         [
             "# Environment variables\n",
             "What differs between machines. A variable of this prefix that nothing reads, or a value that does not",
-            "fit, ends the program with exit code 2 and the nearest name. How to choose them:",
+            "fit, ends the program with exit code 2 and the nearest name. Where the meaning says so, a variable with",
+            "`_FILE` behind its name may name a file that holds the value instead. How to choose them:",
             "[deploying](../operations/deploying.md).\n",
             table(("variable", "default", "meaning"), rows),
         ]
     )
+
+
+def _default(value: object) -> str:
+    return f"`{value:,}`" if isinstance(value, int) else f"`{value}`"
 
 
 def command_page() -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from sqlalchemy import text
+from sqlalchemy import URL, text
 
 from store.db import Database, make_engine, open_sqlite, upgrade
 from store.files import ArtifactStore
@@ -29,8 +29,8 @@ def open_database(settings: DeploymentSettings) -> Database:
         path = settings.folder("bladeatlas.db")
         path.parent.mkdir(parents=True, exist_ok=True)
         return open_sqlite(path)
-    retried_for(_STARTING_S, partial(_upgrade_one_at_a_time, settings.database_url))
-    return Database(settings.database_url)
+    retried_for(_STARTING_S, partial(_upgrade_one_at_a_time, settings.database()))
+    return Database(settings.database())
 
 
 def open_artifacts(settings: DeploymentSettings, folder: str = "") -> ArtifactStore:
@@ -38,10 +38,10 @@ def open_artifacts(settings: DeploymentSettings, folder: str = "") -> ArtifactSt
     root = settings.artifacts()
     if isinstance(root, Path):
         return ArtifactStore(root / folder)
-    return ArtifactStore(f"{root.rstrip('/')}/{folder}".rstrip("/"), **settings.artifacts_options)
+    return ArtifactStore(f"{root.rstrip('/')}/{folder}".rstrip("/"), **settings.storage_options())
 
 
-def _upgrade_one_at_a_time(url: str) -> None:
+def _upgrade_one_at_a_time(url: str | URL) -> None:
     engine = make_engine(url)
     try:
         if engine.dialect.name != "postgresql":

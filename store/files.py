@@ -62,6 +62,24 @@ class ArtifactStore:
         """The root as a local folder; None for an object store."""
         return Path(self._root) if self._local else None
 
+    def prepare(self) -> None:
+        """Make the root when it is missing, a bucket included, and try whether files can be written below it.
+
+        Raises:
+            ResourceError: they cannot, or nobody answers.
+        """
+        name = f".tried-{uuid.uuid4().hex}"
+        try:
+            with self._answering():
+                root = self._root if self._local else self._root.partition("/")[0]
+                if not self._fs.exists(root):
+                    self._fs.makedirs(root, exist_ok=True)
+                self._fs.pipe_file(f"{self._root.rstrip('/')}/{name}", b"")
+                self._fs.rm_file(f"{self._root.rstrip('/')}/{name}")
+        except OSError as error:
+            message = f"the artifact store cannot be written: {error.strerror or error}"
+            raise ResourceError(message, code=UNREACHABLE, where="store") from None
+
     def put(self, path: str, source: Path) -> Stored:
         """Store a copy of the file `source` under `path`, replacing what was there in one step."""
         target = self._full(path)

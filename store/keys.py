@@ -30,6 +30,8 @@ from store.leasing import changed
 _FORM = re.compile(r"ba_([0-9a-f]{32})_[A-Za-z0-9_-]{43}")
 _LONGEST = timedelta(days=36_525)
 _NOTE_USE_EVERY = timedelta(minutes=1)
+_FIRST_LOCK = 0x46495253
+"""PostgreSQL advisory lock: of several that start together one makes the first key."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,14 @@ class Keys:
         session.add(row)
         session.flush()
         return _view(row), key
+
+    def create_first(self, name: str) -> tuple[KeyView, str] | None:
+        """A key of the account `default` when there never was any key, and its only showing; else None."""
+        with self.db.write() as session:
+            self.db.lock(session, _FIRST_LOCK)
+            if session.scalar(select(ApiKey.id).limit(1)) is not None:
+                return None
+            return self._create_in(session, name, DEFAULT_ACCOUNT, USUAL_SCOPES, None)
 
     def rotate(self, key_id: str, keep: timedelta = timedelta(0)) -> tuple[KeyView, str]:
         """A new key with the account, the name and the scopes of another, which ends after `keep`.

@@ -1,17 +1,23 @@
 """Deployment settings: what differs between machines, read from `BLADEATLAS_*` and never part of a fingerprint.
 
-A variable of this prefix that nothing reads is an error, not a wish that is ignored.
+A variable of this prefix that nothing reads is an error, not a wish that is ignored. Secrets may lie in files: for each
+of `SECRETS` the variable with `_FILE` behind its name names a file that holds the value.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote, urlsplit
 
-from pydantic import Field, ValidationError
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
-from sqlalchemy import URL
+from sqlalchemy import URL, make_url
+from sqlalchemy.exc import ArgumentError
 
 from core.errors import BadInput
 from core.names import unknown_name
@@ -22,6 +28,19 @@ _OF_CLIENTS = ("SERVER", "API_KEY")
 """What the commands read that talk to a server; see `cli.remote`."""
 _OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
 """How the names begin that only the tests read."""
+SECRETS = (
+    "database_url",
+    "database_password",
+    "broker_url",
+    "broker_password",
+    "artifacts_options",
+    "artifacts_key",
+    "artifacts_secret",
+)
+"""Settings that may lie in a file each."""
+_BROKERS = ("redis", "rediss", "redis+socket", "sentinel", "amqp", "amqps", "pyamqp")
+_HOST = re.compile(r"[\w.:,\[\]-]*")
+_NO_SECRET = SecretStr("")
 
 
 class DeploymentSettings(BaseSettings):
@@ -32,7 +51,12 @@ class DeploymentSettings(BaseSettings):
     data_dir: Path = Field(
         Path("bladeatlas-data"), description="local folder: uploads, and all else unless configured otherwise"
     )
-    database_url: str = Field("", description="postgresql://user:password@host/name; empty = SQLite in the data folder")
+    database_url: str = Field(
+        "", repr=False, description="postgresql://user@host/name; empty = SQLite in the data folder"
+    )
+    database_password: SecretStr = Field(
+        _NO_SECRET, description="password for it, as it is: in the URL itself `@ : / %` and others must be encoded"
+    )
     workers: int = Field(0, ge=0, description="tasks side by side; 0 = number of cores")
     lease_s: float = Field(30.0, gt=0, description="a lease without a heartbeat ends after this, in seconds")
     heartbeat_s: float = Field(10.0, gt=0, description="leases are renewed this often, in seconds")
@@ -64,11 +88,16 @@ class DeploymentSettings(BaseSettings):
     artifacts_url: str = Field(
         "", description="where files are kept: s3://bucket/prefix or file:///shared (fsspec); empty = data folder"
     )
-    artifacts_options: dict[str, Any] = Field({}, description="JSON for fsspec, e.g. endpoint_url and credentials")
+    artifacts_endpoint: str = Field("", description="address of the S3 server; empty = Amazon's")
+    artifacts_key: SecretStr = Field(_NO_SECRET, description="access key of the S3 server; empty = as boto3 finds it")
+    artifacts_secret: SecretStr = Field(_NO_SECRET, description="the secret that belongs to the key")
+    artifacts_options: dict[str, Any] = Field({}, repr=False, description="further options of fsspec, as JSON")
     broker_url: str = Field(
         "",
-        description="redis://host/0 or amqp://host; empty = runners in the server, and workers ask the database",
+        repr=False,
+        description="redis://host/0 or amqp://user@host; empty = runners in the server, and workers ask the database",
     )
+    broker_password: SecretStr = Field(_NO_SECRET, description="password for it, as it is")
     visibility_timeout_s: float = Field(
         21_600.0,
         gt=0,
@@ -144,13 +173,67 @@ class DeploymentSettings(BaseSettings):
     )
     graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
 
+    @field_validator("database_url")
+    @classmethod
+    def _database_is_an_address(cls, value: str) -> str:
+        if value:
+            try:
+                parsed = make_url(value)
+            except (ArgumentError, ValueError):
+                raise ValueError(_not_an_address("DATABASE")) from None
+            if not _HOST.fullmatch(parsed.host or ""):
+                raise ValueError(_not_an_address("DATABASE"))
+        return value
+
+    @field_validator("broker_url")
+    @classmethod
+    def _broker_is_an_address(cls, value: str) -> str:
+        if value:
+            scheme = value.partition("://")[0]
+            if scheme not in _BROKERS:
+                # Without the separator the whole text would be repeated, and it may hold a password.
+                said = f"'{scheme}' is" if re.fullmatch(r"[a-z0-9+]{1,20}", scheme) and "://" in value else "it names"
+                raise ValueError(f"{said} no kind of broker; known: {', '.join(_BROKERS)}")
+            try:
+                parts = urlsplit(value)
+                valid = parts.port != 0 and not parts.fragment and _HOST.fullmatch(parts.hostname or "")
+            except ValueError:
+                valid = None
+            if not valid:
+                raise ValueError(_not_an_address("BROKER"))
+        return value
+
     def folder(self, name: str) -> Path:
         """A folder of the data folder."""
         return self.data_dir.absolute() / name
 
     def database(self) -> str | URL:
-        """URL of the database."""
-        return self.database_url or URL.create("sqlite+pysqlite", database=str(self.folder("bladeatlas.db")))
+        """URL of the database, with its password."""
+        if not self.database_url:
+            return URL.create("sqlite+pysqlite", database=str(self.folder("bladeatlas.db")))
+        password = self.database_password.get_secret_value()
+        return make_url(self.database_url).set(password=password) if password else self.database_url
+
+    def broker(self) -> str:
+        """URL of the broker, with its password; empty = there is none."""
+        password = self.broker_password.get_secret_value()
+        if not self.broker_url or not password:
+            return self.broker_url
+        scheme, _, rest = self.broker_url.partition("://")
+        user, at, host = rest.rpartition("@")
+        name = user.partition(":")[0] if at else ""
+        return f"{scheme}://{name}:{quote(password, safe='')}@{host}"
+
+    def storage_options(self) -> dict[str, Any]:
+        """What fsspec must know to reach the artifact store."""
+        options = dict(self.artifacts_options)
+        if self.artifacts_key.get_secret_value():
+            options["key"] = self.artifacts_key.get_secret_value()
+        if self.artifacts_secret.get_secret_value():
+            options["secret"] = self.artifacts_secret.get_secret_value()
+        if self.artifacts_endpoint:
+            options["client_kwargs"] = {**options.get("client_kwargs", {}), "endpoint_url": self.artifacts_endpoint}
+        return options
 
     def artifacts(self) -> Path | str:
         """Root of the artifact store: a folder, or a URL."""
@@ -176,7 +259,11 @@ def deployment_settings() -> DeploymentSettings:
     Raises:
         BadInput: a variable is not known, or its value does not fit; the message names it.
     """
-    known = (*(name.upper() for name in DeploymentSettings.model_fields), *_OF_CLIENTS)
+    known = (
+        *(name.upper() for name in DeploymentSettings.model_fields),
+        *(f"{name.upper()}_FILE" for name in SECRETS),
+        *_OF_CLIENTS,
+    )
     for variable in sorted(os.environ):
         # As `DeploymentSettings` reads them: whether letters are large does not matter.
         name = variable.upper().removeprefix(PREFIX)
@@ -184,10 +271,43 @@ def deployment_settings() -> DeploymentSettings:
             message = unknown_name("variable", PREFIX + name, [PREFIX + each for each in known])
             raise BadInput(message, code="unknown_setting", where=variable)
     try:
-        return DeploymentSettings()
+        return DeploymentSettings(**_from_files(os.environ))
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         variable = PREFIX + "_".join(str(part) for part in first["loc"]).upper()
-        raise BadInput(f"{variable}: {first['msg']}", code="bad_setting", where=variable) from None
+        said = first["msg"].removeprefix("Value error, ")
+        raise BadInput(f"{variable}: {said}", code="bad_setting", where=variable) from None
     except SettingsError as error:  # a value that must be JSON; the message names the field and never the value
         raise BadInput(str(error), code="bad_setting", where="environment") from None
+
+
+def _from_files(environment: Mapping[str, str]) -> dict[str, Any]:
+    """Values of the settings whose files the environment names, without the line break at their end.
+
+    Raises:
+        BadInput: a setting is given both ways, or its file cannot be read, or is no JSON where that is asked for.
+    """
+    found: dict[str, Any] = {}
+    given = {name.upper(): value for name, value in environment.items()}
+    for name in SECRETS:
+        variable = f"{PREFIX}{name.upper()}_FILE"
+        if not given.get(variable):
+            continue
+        if given.get(variable.removesuffix("_FILE")):
+            message = f"{variable.removesuffix('_FILE')} and {variable} are both set; one of them is enough"
+            raise BadInput(message, code="bad_setting", where=variable)
+        try:
+            text = Path(given[variable]).read_text(encoding="utf-8").removesuffix("\n").removesuffix("\r")
+            found[name] = json.loads(text) if name == "artifacts_options" else text
+        except OSError as error:
+            message = f"{variable}: the file '{given[variable]}' cannot be read: {error.strerror}"
+            raise BadInput(message, code="bad_setting", where=variable) from None
+        except ValueError:
+            kind = "JSON" if name == "artifacts_options" else "UTF-8 text"
+            message = f"{variable}: the file '{given[variable]}' holds no {kind}"
+            raise BadInput(message, code="bad_setting", where=variable) from None
+    return found
+
+
+def _not_an_address(what: str) -> str:
+    return f"is not an address; a password with special characters belongs into {PREFIX}{what}_PASSWORD"

@@ -215,7 +215,7 @@ def _asking(service: WorkerService, workers: int) -> int:
 
 def _fed_by_broker(service: WorkerService, workers: int) -> int:
     settings, plan = service.settings, service.plan
-    queue = TaskQueue(settings.broker_url, settings.visibility_timeout_s)
+    queue = TaskQueue(settings.broker(), settings.visibility_timeout_s)
     announcements = Announcements(service.database)
 
     def announce(unheard_s: float | None = None) -> None:

@@ -1,0 +1,27 @@
+"""Stage `blades`: the blades of the row that `row` found, with what the user knows of it, or why it is none."""
+
+from __future__ import annotations
+
+from core.io.sparse import read_model
+from core.io.surface import supported_mesh
+from core.mapping.scene import oriented
+from core.row.estimate import describe_row
+from core.row.files import read_found, write_blades
+from core.row.model import NoRow
+from core.scene.views import views_of
+from core.stage import StageResult, StageTask
+from core.surface.ply import read_mesh
+
+
+def run(task: StageTask) -> StageResult:
+    """Write ``blades.json``. Facts: n_blades, and where there are none the reason."""
+    found = read_found(task.input("row"))
+    if not isinstance(found, NoRow):
+        views = views_of(read_model(task.input("extend")))
+        mesh = oriented(read_mesh(supported_mesh(task.input("mesh"))), views)
+        task.report(1, 4, "telling the blades apart")
+        found = describe_row(mesh, views, task.settings.seed, found, task.settings.row)
+    write_blades(task.out, found)
+    if isinstance(found, NoRow):
+        return StageResult({"n_blades": 0, "reason": str(found.reason)})
+    return StageResult({"n_blades": len(found.numbers), "reason": None})

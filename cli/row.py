@@ -6,6 +6,7 @@ import argparse
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -30,13 +31,8 @@ def command(parsed: argparse.Namespace) -> int:
     document = read_json(folder / ROW)
     if parsed.json:
         say_json(document, indent=1)
-    elif document["status"] == "unknown":
-        say(f"row: unknown: {document['reason_text']}")
     else:
-        low, high = document["count"]
-        blades = str(low) if low == high else f"{low} to {high}"
-        say(f"row: pitch {document['pitch_deg']:.3f} +- {document['pitch_sigma_deg']:.3f} degrees, {blades} blades")
-        say(closing_line(document))
+        say(*row_lines(document))
     return 0
 
 
@@ -53,6 +49,16 @@ def told_row(pairs: Sequence[str]) -> RowSettings:
             raise BadInput(f"'{pair}' is no NAME=VALUE", where="--set")
         options[f"row.{name}"] = value
     return make_settings(options=options).row
+
+
+def row_lines(document: dict[str, Any]) -> list[str]:
+    """What the object of ``row.json`` says, in two lines; in one where the row is unknown."""
+    if document["status"] == "unknown":
+        return [f"row: unknown: {document['reason_text']}"]
+    low, high = document["count"]
+    blades = str(low) if low == high else f"{low} to {high}"
+    pitch = f"{document['pitch_deg']:.3f} +- {document['pitch_sigma_deg']:.3f} degrees"
+    return [f"row: pitch {pitch}, {blades} blades", closing_line(document)]
 
 
 def closing_line(document: dict[str, object]) -> str:

@@ -158,8 +158,8 @@ STAGES: dict[str, StageSpec] = {
             version=9,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),
-        _spec("viewer", version=2, weight=2),
+        _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
+        _spec("viewer", version=3, weight=2),
     )
 }
 

@@ -163,7 +163,8 @@ def _described(
     on_blade = coarse.of(~radial(row.axis, coarse.points, coarse.normals))
     seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
     count = told.count
-    numbers = told_numbers(in_order(seen, index, blades), told)
+    first = in_order(seen, index, blades)
+    numbers = told_numbers(first, told)
     spread = _deviations(sheet, fine, blades)
     sigma = row.pitch_rad * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
     _, radius, _ = row.axis.cylinder(fine.points[~radial(row.axis, fine.points, fine.normals)])
@@ -184,6 +185,7 @@ def _described(
         numbers,
         section_of(sheet, fine),
         coverage_of(seen, index, numbers),
+        first[int(blades.min())] == 1,
         EdgeName.UNKNOWN if told.edge_a is None else EdgeName(told.edge_a),
         told.zero_blade,
         told.direction if told.zero_blade is not None or told.direction == "reversed" else None,

@@ -59,7 +59,17 @@ def _read_axis(values: JsonObject) -> Axis:
 
 def _row(row: BladeRow) -> JsonObject:
     sheet, section = row.sheet, row.section
-    plain = ("count", "root_radius", "tip_radius", "radius_sigma", "contrast", "pitch_sigma_rad", "zero_blade")
+    plain = (
+        "count",
+        "root_radius",
+        "tip_radius",
+        "radius_sigma",
+        "contrast",
+        "pitch_sigma_rad",
+        "zero_blade",
+        "direction",
+        "appears_rising",
+    )
     return {
         **_axis(sheet.axis),
         "pitch_rad": sheet.pitch_rad,
@@ -71,7 +81,6 @@ def _row(row: BladeRow) -> JsonObject:
         **{name: getattr(row, name) for name in plain},
         "status": str(row.status),
         "edge_a": str(row.edge_a),
-        "direction": row.direction,
         "overlaps": dict(row.overlaps),
         "numbers": [[index, number] for index, number in row.numbers.items()],
         "coverage": [{**one.__dict__, "by_views": list(one.by_views.items())} for one in row.coverage],
@@ -101,10 +110,11 @@ def _read_row(values: JsonObject) -> BladeRow:
         root_radius=values["root_radius"],
         tip_radius=values["tip_radius"],
         radius_sigma=values["radius_sigma"],
-        numbers={index: number for index, number in values["numbers"]},
+        numbers=dict(values["numbers"]),
         section=Section(sides, edges),
         coverage=tuple(Coverage(**{**one, "by_views": dict(one["by_views"])}) for one in values["coverage"]),
         edge_a=EdgeName(values["edge_a"]),
         zero_blade=values["zero_blade"],
+        appears_rising=values["appears_rising"],
         direction=values["direction"],
     )

@@ -101,6 +101,8 @@ class BladeRow:
     """Of the blades seen by their index on the sheet: from 1 in order of first appearance, or as the user counts."""
     section: Section
     coverage: tuple[Coverage, ...] = ()
+    appears_rising: bool = True
+    """Whether blades of growing angle come into view later."""
     edge_a: EdgeName = EdgeName.UNKNOWN
     """Of the edge lower along the axis."""
     zero_blade: int | None = None
@@ -124,6 +126,13 @@ class BladeRow:
         ordered = sorted(self.numbers, key=lambda index: self.numbers[index])
         return np.array([self.sheet.start_rad + index * self.pitch_rad for index in ordered])
 
+    @property
+    def seen(self) -> dict[int, int]:
+        """Place of every blade in order of first appearance along the row, from 1, by its number."""
+        rising = sorted(self.numbers)
+        first = rising if self.appears_rising else rising[::-1]
+        return {self.numbers[index]: 1 + abs(index - first[0]) for index in first}
+
     def to_dict(self) -> JsonObject:
         """JSON form."""
         return {
@@ -145,7 +154,7 @@ class BladeRow:
             "sides": {"growing": str(self.section.sides[1]), "falling": str(self.section.sides[-1])},
             "edges_seen": [name for name, edge in self.section.edges.items() if edge is not None],
             "blades": [
-                {"number": number, "angle_deg": round(float(np.degrees(phase)), 4)}
+                {"number": number, "seen": self.seen[number], "angle_deg": round(float(np.degrees(phase)), 4)}
                 for number, phase in zip(sorted(self.numbers.values()), self.phases, strict=True)
             ],
             "coverage": [

@@ -38,10 +38,12 @@ class OnRow:
     blade: int | None
     """Number of the blade; None between the blades, or on one that hardly was seen."""
     columns: RowColumns
+    from_edge_a: float | None = None
+    """Share of the chord from edge a to edge b, whatever these are; None where one of them was not seen."""
 
     def to_dict(self) -> JsonObject:
         """JSON form."""
-        return {"blade": self.blade, **asdict(self.columns)}
+        return {"blade": self.blade, **asdict(self.columns), "from_edge_a": self.from_edge_a}
 
     def scaled(self, scale: Scale | None) -> OnRow:
         """The same with lengths in mm; unchanged without a scale."""
@@ -85,8 +87,9 @@ def on_row(row: BladeRow, places: F64, normals: F64, sigmas: Sequence[float | No
             columns = {name: value for name, value in columns.items() if not name.startswith(("chord", "edge"))}
         else:
             side = _side(row, float(cosine[k]), float(chord[k]), own)
+        share = None if across[k] else _share(float(chord[k]), own)
         rounded = {name: round(value, _DIGITS) for name, value in columns.items()}
-        found.append(OnRow(blade, RowColumns(side=side, **rounded)))
+        found.append(OnRow(blade, RowColumns(side=side, **rounded), None if share is None else round(share, _DIGITS)))
     return found
 
 
@@ -108,12 +111,19 @@ def _chord_columns(row: BladeRow, chord: float, edges: dict[str, tuple[float, fl
         return {}
     distance, sigma = min((abs(chord - at), spread) for at, spread in edges.values())
     columns = {"edge_distance": distance, "edge_distance_sigma": sigma}
-    if len(edges) == 2 and row.edge_a != EdgeName.UNKNOWN:
+    share = _share(chord, edges)
+    if share is not None and row.edge_a != EdgeName.UNKNOWN:
         (a, spread_a), (b, spread_b) = edges["a"], edges["b"]
-        share = float(np.clip((chord - a) / (b - a), 0.0, 1.0))
         spread = float(np.hypot((1.0 - share) * spread_a, share * spread_b)) / abs(b - a)
         columns |= {"chord": share if row.edge_a == EdgeName.LEADING else 1.0 - share, "chord_sigma": spread}
     return columns
+
+
+def _share(chord: float, edges: dict[str, tuple[float, float]]) -> float | None:
+    if len(edges) < 2:
+        return None
+    (a, _), (b, _) = edges["a"], edges["b"]
+    return float(np.clip((chord - a) / (b - a), 0.0, 1.0))
 
 
 def _end(row: BladeRow, radius: float, sigma: float | None) -> Side:

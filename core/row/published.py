@@ -20,6 +20,7 @@ from core.outputs import (
     DEFECTS,
     DETECTIONS,
     ROW,
+    ROW_MAP,
     SPARSE,
     SUMMARY,
     SURFACE,
@@ -29,12 +30,13 @@ from core.outputs import (
 )
 from core.report.tables import write_csv
 from core.row.estimate import UNTOLD, estimate_row
+from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.places import blades_of_vertices
 from core.row.tables import RowOfModel, events_on_row
 from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import DetectionRow
-from core.scene.on_row import ROW_COLUMNS, RowColumns
+from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS
 from core.scene.size import Scale
 from core.scene.views import views_of
 from core.settings.row import RowSettings
@@ -83,7 +85,7 @@ def write_row(folder: Path, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
             own, findings = where.records(own)
         else:
             detections = [_without(row) if row.model == number else row for row in detections]
-            own = [replace(record, blade=None, on_row=RowColumns()) for record in own]
+            own = [replace(record, blade=None, on_row=NOT_ON_A_ROW) for record in own]
         defects = [next((new for new in own if new.id == old.id), old) for old in defects]
         found[number] = where.row if isinstance(where, RowOfModel) else where
         documents[number] = {**found[number].to_dict(), "findings": findings}
@@ -94,9 +96,13 @@ def write_row(folder: Path, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
         changed = _changed(records, defects)
         _replace(folder / DEFECTS, lambda path: write_json(path, changed))
     for number in sorted(found, reverse=True):
-        document = documents[number]
-        _replace(model_folder(folder, number) / ROW, lambda path, value=document: write_json(path, value))  # type: ignore[misc]
+        _write_row(model_folder(folder, number), documents[number])
     return found[0]
+
+
+def _write_row(folder: Path, document: JsonObject) -> None:
+    _replace(folder / ROW_MAP, lambda path: path.write_text(row_map(document), encoding="utf-8"))
+    _replace(folder / ROW, lambda path: write_json(path, document))
 
 
 def _row_of(folder: Path, model: int, scale: Scale | None, told: RowSettings) -> RowOfModel | NoRow:
@@ -114,11 +120,11 @@ def _row_of(folder: Path, model: int, scale: Scale | None, told: RowSettings) ->
         _replace(
             folder / DEFECT_SURFACE, lambda path: write_mesh(path, replace(colored, extra=extra), colored.comments)
         )
-    return RowOfModel(row, mesh, model, scale)
+    return RowOfModel(row, mesh, views, model, scale)
 
 
 def _without(row: DetectionRow) -> DetectionRow:
-    return replace(row, blade=None, on_row=RowColumns())
+    return replace(row, blade=None, on_row=NOT_ON_A_ROW)
 
 
 def _sigmas(path: Path) -> dict[int, float | None]:
@@ -153,7 +159,7 @@ def _read(path: Path) -> Rows:
     return rows
 
 
-def _replace(path: Path, write: Callable[[Path], None]) -> None:
+def _replace(path: Path, write: Callable[[Path], object]) -> None:
     """Write beside the file and put it in its place at once."""
     beside = path.with_name(f".{path.name}.new")
     write(beside)

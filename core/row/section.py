@@ -1,13 +1,15 @@
 """The section of a row's blades: which side is concave, and where the edges are, by laying all blades onto each other.
 
-The blades are equal, so the points of all of them, each turned back by its number of pitches, show one blade. At a radius
-its section is a curve in the plane of height along the axis and arc; the chord runs along the sheet of `core.row.blades`.
+The blades are equal, so the points of all of them, each turned back by its number of pitches, show one blade. At a
+radius its section is a curve in the plane of height along the axis and arc; the chord runs along the sheet of
+`core.row.blades`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,7 +148,7 @@ def _edge(chord: F64, rho: F64, cosine: F64, spacing: float, end: int) -> Edge |
     """The edge at one end (-1 low, 1 high) of the chord, where the surface goes round it at most of the radii."""
     bounds = np.percentile(rho, np.linspace(0.0, 100.0, BANDS + 1))
     places = []
-    for low, high in zip(bounds[:-1], bounds[1:], strict=True):
+    for low, high in pairwise(bounds.tolist()):
         own = (rho >= low) & (rho <= high)
         if own.sum() < LEAST_POINTS:
             continue
@@ -159,7 +161,8 @@ def _edge(chord: F64, rho: F64, cosine: F64, spacing: float, end: int) -> Edge |
     if len(places) <= BANDS / 2:
         return None
     x, y = np.array(places).T
-    slope = float(np.median([(y[j] - y[i]) / (x[j] - x[i]) for i in range(len(x)) for j in range(i + 1, len(x))]))
+    # The median of the slopes between all pairs (Theil 1950, Sen 1968): a band where it is torn does not count.
+    slope = float(np.median([(y[j] - y[i]) / (x[j] - x[i]) for i, j in combinations(range(len(x)), 2)]))
     at = float(np.median(y - slope * x))
     scatter = 1.4826 * float(np.median(np.abs(y - at - slope * x)))
     return Edge(at, slope, float(np.hypot(scatter, spacing)))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.json_files import JsonObject
 from core.row.model import BladeRow, NoRow
@@ -14,8 +15,11 @@ from core.row.places import OnRow, blade_name, normals_at, on_row
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow
 from core.scene.detection import DetectionRow
 from core.scene.size import LengthUnit, Scale, ScaleSource
+from core.scene.views import Views
 from core.settings.row import RowSettings
 from core.surface.ply import Mesh
+
+F64 = NDArray[np.float64]
 
 TOLD_SHARE = 0.01
 """Standard deviation of a radius that is told without one, as a share of it."""
@@ -30,6 +34,8 @@ class RowOfModel:
     row: BladeRow
     mesh: Mesh
     """Surface of the model, its faces counter-clockwise seen from the cameras."""
+    views: Views
+    """Of the model."""
     model: int = 0
     scale: Scale | None = None
 
@@ -38,9 +44,7 @@ class RowOfModel:
         """Of the lengths in its columns."""
         return MODEL_UNIT if self.scale is None else LengthUnit.MM
 
-    def detections(
-        self, rows: Sequence[DetectionRow], sigmas: Mapping[int, float | None]
-    ) -> list[DetectionRow]:
+    def detections(self, rows: Sequence[DetectionRow], sigmas: Mapping[int, float | None]) -> list[DetectionRow]:
         """The rows, those with a place in this model with their blade and where on it they lie.
 
         Args:
@@ -49,9 +53,19 @@ class RowOfModel:
         """
         own = [row for row in rows if row.x is not None and row.model in (None, self.model)]
         places = np.array([(row.x, row.y, row.z) for row in own], np.float64).reshape(-1, 3)
-        found = on_row(self.row, places, normals_at(self.mesh, places), [sigmas.get(row.id) for row in own])
+        normals = self._seen(own, places, normals_at(self.mesh, places))
+        found = on_row(self.row, places, normals, [sigmas.get(row.id) for row in own])
         by_id = {row.id: place.scaled(self.scale) for row, place in zip(own, found, strict=True)}
         return [self._with(row, by_id[row.id]) if row.id in by_id else row for row in rows]
+
+    def _seen(self, rows: Sequence[DetectionRow], places: F64, normals: F64) -> F64:
+        """(n, 3) the normals, each turned to the camera that saw its detection: a thin blade has its back near by."""
+        views = [None if row.frame_index is None else self.views.row(row.frame_index) for row in rows]
+        seen = normals.copy()
+        for k, view in enumerate(views):
+            if view is not None and float((self.views.centers[view] - places[k]) @ normals[k]) < 0:
+                seen[k] = -normals[k]
+        return seen
 
     def _with(self, row: DetectionRow, place: OnRow) -> DetectionRow:
         name = blade_name(place.blade, self.model)

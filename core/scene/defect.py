@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from core.json_files import JsonObject
-from core.scene.on_row import RowColumns
+from core.scene.on_row import NOT_ON_A_ROW, RowColumns
 from core.scene.size import LengthUnit, Size
 
 
@@ -173,7 +173,7 @@ class DefectRecord:
     """Published path of its picture."""
     size: Size | None = None
     """How large it is on the surface."""
-    on_row: RowColumns = RowColumns()
+    on_row: RowColumns = NOT_ON_A_ROW
     """Where on its blade it lies."""
 
     def to_dict(self) -> JsonObject:

@@ -11,7 +11,7 @@ from typing import Any
 from core.geometry.boxes import Box
 from core.json_files import JsonObject
 from core.scene.frame import SourceFrame
-from core.scene.on_row import ROW_COLUMNS, RowColumns
+from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS, RowColumns
 from core.scene.size import LengthUnit, SizeFrom
 from core.videos import moment
 
@@ -187,7 +187,7 @@ class DetectionRow:
     """`mm` where a scale is known, else `model`: the unit of the model's coordinates; empty without any length."""
     size_from: SizeFrom | None = None
     """What the outline is known from: `mask`, or `box` for the ellipse in the box."""
-    on_row: RowColumns = RowColumns()
+    on_row: RowColumns = NOT_ON_A_ROW
     """Columns of where on its blade it lies."""
 
     @property

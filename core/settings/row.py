@@ -35,7 +35,11 @@ class RowSettings(Group):
         source="user",
     )
     radius_mm: float | None = option(
-        None, "distance of row.radius_at from the axis of the engine, which gives the scale", unit="mm", source="user", gt=0
+        None,
+        "distance of row.radius_at from the axis of the engine, which gives the scale",
+        unit="mm",
+        source="user",
+        gt=0,
     )
     radius_sigma_mm: float | None = option(
         None, "standard deviation of row.radius_mm; none = 1 % of it", unit="mm", source="user", ge=0

@@ -7,7 +7,8 @@ from core.io.surface import supported_mesh
 from core.mapping.scene import oriented
 from core.row.estimate import describe_row
 from core.row.files import read_found, write_blades
-from core.row.model import NoRow
+from core.row.model import BladeRow, NoRow
+from core.row.overlap import Hypothesis
 from core.scene.views import views_of
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
@@ -16,12 +17,15 @@ from core.surface.ply import read_mesh
 def run(task: StageTask) -> StageResult:
     """Write ``blades.json``. Facts: n_blades, and where there are none the reason."""
     found = read_found(task.input("row"))
-    if not isinstance(found, NoRow):
-        views = views_of(read_model(task.input("extend")))
-        mesh = oriented(read_mesh(supported_mesh(task.input("mesh"))), views)
-        task.report(1, 4, "telling the blades apart")
-        found = describe_row(mesh, views, task.settings.seed, found, task.settings.row)
-    write_blades(task.out, found)
-    if isinstance(found, NoRow):
-        return StageResult({"n_blades": 0, "reason": str(found.reason)})
-    return StageResult({"n_blades": len(found.numbers), "reason": None})
+    row = found if isinstance(found, NoRow) else _described(task, found)
+    write_blades(task.out, row)
+    if isinstance(row, NoRow):
+        return StageResult({"n_blades": 0, "reason": str(row.reason)})
+    return StageResult({"n_blades": len(row.numbers), "reason": None})
+
+
+def _described(task: StageTask, found: Hypothesis) -> BladeRow | NoRow:
+    views = views_of(read_model(task.input("extend")))
+    mesh = oriented(read_mesh(supported_mesh(task.input("mesh"))), views)
+    task.report(1, 4, "telling the blades apart")
+    return describe_row(mesh, views, task.settings.seed, found, task.settings.row)

@@ -13,8 +13,9 @@ from core.json_files import JsonObject, write_json
 from core.mapping.coloring import blend
 from core.mapping.scene import oriented
 from core.measure.scale import find_scale
-from core.outputs import ROW
+from core.outputs import ROW, ROW_MAP
 from core.row.files import read_blades
+from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.places import blades_of_vertices
 from core.row.tables import RowOfModel, events_on_row, scale_of_row
@@ -44,9 +45,11 @@ def run(task: StageTask) -> StageResult:
     findings: list[JsonObject] = []
     if isinstance(row, BladeRow):
         task.report(3, 4, "finding the blades of the defects")
-        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), task.piece, found.scale))
+        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.piece, found.scale))
         extra["blade"] = blades_of_vertices(row, mesh)
-    write_json(task.out / ROW, {**row.to_dict(), "findings": findings})
+    document = {**row.to_dict(), "findings": findings}
+    write_json(task.out / ROW, document)
+    (task.out / ROW_MAP).write_text(row_map(document), encoding="utf-8")
     write_timeline(task.out, found.events, found.defects, found.confidences)
     write_rows(task.out, found.rows)
     task.report(3, 4, "writing the coloured surface")

@@ -55,10 +55,10 @@ def row_map(row: JsonObject) -> str:
     if row["status"] == "unknown":
         body = _text(WIDTH / 2, HEIGHT / 2, f"The row of blades is unknown: {row['reason_text']}.", 16, "middle")
         return _document(body, "The row of blades is unknown")
-    numbers = [int(blade["number"]) for blade in sorted(row["blades"], key=lambda blade: blade["seen"])]
-    arc, cells = _Arc(len(numbers)), {number: k for k, number in enumerate(numbers)}
-    coverage = {int(one["blade"]): one for one in row["coverage"]}
-    parts = [_cell(arc, cells[number], number, coverage[number]) for number in numbers]
+    cells = {int(blade["number"]): int(blade["seen"]) - 1 for blade in row["blades"]}
+    arc, coverage = _Arc(max(cells.values()) + 1), {int(one["blade"]): one for one in row["coverage"]}
+    parts = [_ring(arc, cell, ROOT, TIP, "none", dashed=True) for cell in set(range(arc.count)) - set(cells.values())]
+    parts += [_cell(arc, cell, number, coverage[number]) for number, cell in cells.items()]
     parts += _marks(arc, cells, row["findings"])
     parts += _legend(row)
     parts.append(_text(*arc.at(0, -0.06, ROOT - 4), "root", 12, "end"))
@@ -83,28 +83,30 @@ def _percent(seen: Mapping[str, Any]) -> str:
     return f"{100 * float(seen['views_5']):.0f} %"
 
 
-def _ring(arc: _Arc, cell: int, low: float, high: float, fill: str, opacity: float = 1.0) -> str:
+def _ring(arc: _Arc, cell: int, low: float, high: float, fill: str, opacity: float = 1.0, dashed: bool = False) -> str:
     corners = [arc.at(cell, along, radius) for along, radius in ((0, low), (1, low), (1, high), (0, high))]
     (ax, ay), (bx, by), (cx, cy), (dx, dy) = corners
     path = (
         f"M{ax:.1f} {ay:.1f}A{low:.1f} {low:.1f} 0 0 1 {bx:.1f} {by:.1f}L{cx:.1f} {cy:.1f}"
         f"A{high:.1f} {high:.1f} 0 0 0 {dx:.1f} {dy:.1f}Z"
     )
-    return f'<path d="{path}" fill="{fill}" fill-opacity="{opacity:g}" stroke="{_INK}" stroke-width="0.8"/>'
+    line = ' stroke-dasharray="4 4"' if dashed else ""
+    return f'<path d="{path}" fill="{fill}" fill-opacity="{opacity:g}" stroke="{_INK}" stroke-width="0.8"{line}/>'
 
 
 def _marks(arc: _Arc, cells: Mapping[int, int], findings: Sequence[JsonObject]) -> list[str]:
-    parts = []
+    parts: list[str] = []
     for one in findings:
         if one["blade"] not in cells:
             continue
         along = 0.5 if one["from_edge_a"] is None else float(one["from_edge_a"])
         x, y = arc.at(cells[one["blade"]], along, ROOT + float(one["span"]) * (TIP - ROOT))
         fill = "white" if one["side"] in _HOLLOW else "#c62828"
-        words = f"D{one['defect']} {one['label']}: {str(one['side']).replace('_', ' ')}, span {100 * one['span']:.0f} %"
+        name = f"D{one['defect']}"
+        words = f"{name} {one['label']}: {str(one['side']).replace('_', ' ')}, span {100 * one['span']:.0f} %"
         parts.append(
             f'<g><title>{escape(words)}</title><circle cx="{x:.1f}" cy="{y:.1f}" r="{MARK:g}" fill="{fill}" '
-            f'stroke="#c62828" stroke-width="2"/>{_text(x + MARK + 3, y + 4, f"D{one["defect"]}", 12, "start")}</g>'
+            f'stroke="#c62828" stroke-width="2"/>{_text(x + MARK + 3, y + 4, name, 12, "start")}</g>'
         )
     return parts
 

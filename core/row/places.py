@@ -27,6 +27,8 @@ EDGE_SIGMAS = 2.0
 """A place that looks along the chord lies on an edge within so many sigmas of it."""
 EDGE_COSINE = 2.0 * FACING
 """Cosine between the normal of a place and that of the sheet, below which it looks along the chord."""
+ON_SHEET = 0.25
+"""Of a pitch: a place nearer to the middle of a blade is the blade's, whichever way its surface looks."""
 _DIGITS = 6
 _EDGES = {EdgeName.LEADING: Side.LEADING_EDGE, EdgeName.TRAILING: Side.TRAILING_EDGE, EdgeName.UNKNOWN: Side.EDGE}
 
@@ -73,6 +75,8 @@ def on_row(row: BladeRow, places: F64, normals: F64, sigmas: Sequence[float | No
     across = radial(row.axis, places, normals)
     index, cosine = row.sheet.blade(places), facing(row.sheet, places, normals)
     chord, _, from_middle = on_sheet(row.sheet, places)
+    position = row.sheet.position(places)
+    off = position - np.round(position)
     edges = {
         name: (edge.chord(from_middle), edge.sigma) for name, edge in row.section.edges.items() if edge is not None
     }
@@ -83,7 +87,10 @@ def on_row(row: BladeRow, places: F64, normals: F64, sigmas: Sequence[float | No
         blade = row.numbers.get(int(index[k]))
         if across[k]:
             side = _end(row, float(radius[k]), sigma)
-            blade = blade if side == Side.TIP else None
+            if side == Side.OTHER and abs(off[k]) < ON_SHEET:
+                side = Side.UNKNOWN  # the wall of a dent, say, in the middle of a blade
+            elif side != Side.TIP:
+                blade = None
             columns = {name: value for name, value in columns.items() if not name.startswith(("chord", "edge"))}
         else:
             side = _side(row, float(cosine[k]), float(chord[k]), own)

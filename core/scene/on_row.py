@@ -29,8 +29,8 @@ class RowColumns:
     """Columns that say where on a blade a place lies, all empty while no row is known; the fields are their names."""
 
     side: Side | None = None
-    """Part of the blade: `concave`, `convex`, `leading_edge`, `trailing_edge`, `edge`, `tip`; `platform`, `other` surface
-    or `unknown`."""
+    """Part of the blade: `concave`, `convex`, `leading_edge`, `trailing_edge`, `edge`, `tip`; `platform`, `other` or
+    `unknown`."""
     span: float | None = None
     """Place from root (0) to tip (1), of what was seen of the blades."""
     span_sigma: float | None = None

@@ -25,6 +25,7 @@ from api.routes import (
     keys,
     options,
     pages,
+    row,
     session,
     stages,
     system,
@@ -46,7 +47,7 @@ from store.settings import deployment_settings
 from store.web_sessions import WebSessions
 
 _ROUTERS = (
-    *(health, pages, system, options, uploads, inspections, actions, stages, tables, artifacts, viewer, frames),
+    *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, artifacts, viewer, frames),
     *(session, keys, accounts, audit, events),
 )
 

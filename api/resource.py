@@ -50,6 +50,7 @@ _LINKS = (
     "archive.zip",
     "cancel",
     "retry",
+    "row",
 )
 
 

@@ -142,8 +142,14 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     views.add_argument("--defect", metavar="ID", help="or the place of a defect: D1, or 1")
     views.add_argument("--video", type=int, metavar="N", help="of several videos, only frames of this one, from 0")
     views.add_argument("--limit", type=int, default=20, metavar="N", help="frames listed, at most (20)")
-    row = _add(commands, "row", "find the row of blades of a result; write row.json and the column `blade` into it")
-    row.add_argument("--set", action="append", default=[], metavar="count=N", help="what is known: blades in the row")
+    row = _add(commands, "row", "find the row of blades of a result; write row.json, its map and columns into it")
+    row.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="what is known of the row: count, zero_blade, direction, edge_a (options row.*)",
+    )
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
     row.add_argument("--json", action="store_true", help="print row.json")
     view = _add(commands, "view", "open a result in the browser: findings, surface, frames, timeline")

@@ -6,14 +6,16 @@ import json
 from pathlib import Path
 from typing import Any
 
+from cli.row import row_lines
 from cli.terminal import duration
-from core.outputs import VIEWER_PAGE
+from core.outputs import ROW, VIEWER_PAGE
 from worker.events import Outcome
 
 SHOWN_FILES = (
     (VIEWER_PAGE, "findings, surface, frames and timeline in one page: open this first"),
     ("gallery/index.html", "detections on the frames, the mesh from two sides"),
     ("mapping/mesh_defects.glb", "defect-coloured surface, for any 3D viewer"),
+    ("row_map.svg", "blades seen, their coverage, and the findings on them"),
     ("mapping/defects.json", "one record per physical defect"),
     ("mapping/detections.csv", "one row per input detection"),
     ("mapping/timeline.csv", "one row per event"),
@@ -34,7 +36,9 @@ def lines(outcome: Outcome) -> list[str]:
         f"{outcome.state} in {duration(outcome.seconds)}"
         f" ({outcome.computed} tasks computed, {outcome.reused} already there)",
     ]
-    return [*found, *_headline(summary), *_funnel(quality), *_verdict(quality), *_files(outcome.out)]
+    row = _read(outcome.out / ROW)
+    last = ["", *row_lines(row)[-1:]] if row else []
+    return [*found, *_headline(summary), *_funnel(quality), *_verdict(quality), *_files(outcome.out), *last]
 
 
 def _headline(summary: dict[str, Any]) -> list[str]:

@@ -6,6 +6,7 @@ import argparse
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +14,9 @@ from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.json_files import read_json
 from core.outputs import ROW
+from core.settings import make_settings
+from core.settings.row import RowSettings
 
-LEAST_COUNT, MOST_COUNT = 7, 180
 NOT_SEEN = 0.5
 """A blade less than this share of whose surface two views see at a usable angle was not seen well."""
 
@@ -25,35 +27,38 @@ def command(parsed: argparse.Namespace) -> int:
     from core.row.published import write_row
 
     folder: Path = parsed.result
-    write_row(folder, told_count(parsed.set))
+    write_row(folder, told_row(parsed.set))
     document = read_json(folder / ROW)
     if parsed.json:
         say_json(document, indent=1)
-    elif document["status"] == "unknown":
-        say(f"row: unknown: {document['reason_text']}")
     else:
-        low, high = document["count"]
-        blades = str(low) if low == high else f"{low} to {high}"
-        say(f"row: pitch {document['pitch_deg']:.3f} +- {document['pitch_sigma_deg']:.3f} degrees, {blades} blades")
-        say(closing_line(document))
+        say(*row_lines(document))
     return 0
 
 
-def told_count(pairs: Sequence[str]) -> int | None:
-    """The number of blades of `--set count=N`; None when it is not told.
+def told_row(pairs: Sequence[str]) -> RowSettings:
+    """What the user tells of the row by `--set NAME=VALUE`: the options `row.NAME` of a run.
 
     Raises:
-        BadInput: another name, or no possible number.
+        BadInput: no such option, or a value that does not fit.
     """
-    count = None
+    options = {}
     for pair in pairs:
-        name, _, value = pair.partition("=")
-        if name != "count":
-            raise BadInput(f"'{name}' is nothing that a row can be told; it can be told: count", where="--set")
-        if not value.isdecimal() or not LEAST_COUNT <= int(value) <= MOST_COUNT:
-            raise BadInput(f"'{value}' is no number of blades from {LEAST_COUNT} to {MOST_COUNT}", where="--set count")
-        count = int(value)
-    return count
+        name, given, value = pair.partition("=")
+        if not given:
+            raise BadInput(f"'{pair}' is no NAME=VALUE", where="--set")
+        options[f"row.{name}"] = value
+    return make_settings(options=options).row
+
+
+def row_lines(document: dict[str, Any]) -> list[str]:
+    """What the object of ``row.json`` says, in two lines; in one where the row is unknown."""
+    if document["status"] == "unknown":
+        return [f"row: unknown: {document['reason_text']}"]
+    low, high = document["count"]
+    blades = str(low) if low == high else f"{low} to {high}"
+    pitch = f"{document['pitch_deg']:.3f} +- {document['pitch_sigma_deg']:.3f} degrees"
+    return [f"row: pitch {pitch}, {blades} blades", closing_line(document)]
 
 
 def closing_line(document: dict[str, object]) -> str:

@@ -147,17 +147,20 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec("fuse", "fusion", weight=3),
         _spec("mesh", "mesh", weight=2),
+        _spec("row", "seed", weight=3),
+        _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", weight=1),
         _spec("map_defects", "mapping", version=11, weight=0.6),
         _spec(
             "timeline",
             *_options("mapping", "method", "radius_fraction", "sigma_fraction"),
             "timeline",
             "scale",
-            version=9,
+            *_options("row", "radius_mm", "radius_sigma_mm", "radius_at"),
+            version=10,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),
-        _spec("viewer", version=2, weight=2),
+        _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
+        _spec("viewer", version=3, weight=2),
     )
 }
 
@@ -330,9 +333,12 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: st
     tasks += [*depth, *geometric]
     tasks.append(TaskSpec("fuse", ("undistort", *(task.key for task in geometric))))
     tasks.append(TaskSpec("mesh", ("fuse",)))
+    # Optional: a row that cannot be told is an outcome, and places are worth having without.
+    tasks.append(TaskSpec("row", ("extend", "mesh"), optional=True))
+    tasks.append(TaskSpec("blades", ("extend", "mesh", "row"), optional=True))
     dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
     tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", graph, "extend", *dense_keys)))
-    tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "map_defects")))
+    tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "blades", "map_defects")))
     tasks.append(TaskSpec("viewer", ("frames", "pictures", "extend", "mesh", "timeline")))
     if settings.model.further and "pieces" not in facts:
         return tasks
@@ -362,6 +368,8 @@ def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec
         TaskSpec(geometric, (key("undistort"), depth), whole, optional=True),
         TaskSpec(key("fuse"), (key("undistort"), geometric), one, optional=True),
         TaskSpec(key("mesh"), (key("fuse"),), one, optional=True),
+        TaskSpec(key("row"), (key("extend"), key("mesh")), one, optional=True),
+        TaskSpec(key("blades"), (key("extend"), key("mesh"), key("row")), one, optional=True),
         TaskSpec(
             key("map_defects"),
             ("probe", "annotations", "frames", graph, key("undistort"), geometric, *surface),
@@ -369,7 +377,10 @@ def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec
             optional=True,
         ),
         TaskSpec(
-            key("timeline"), ("annotations", "frames", *surface, key("map_defects"), *timelines), one, optional=True
+            key("timeline"),
+            ("annotations", "frames", *surface, key("blades"), key("map_defects"), *timelines),
+            one,
+            optional=True,
         ),
         TaskSpec(
             key("viewer"), ("frames", "pictures", key("extend"), key("mesh"), key("timeline")), one, optional=True

@@ -30,6 +30,8 @@ FRAMES = "frames.csv"
 """Frames that took part."""
 ROW = "row.json"
 """The row of blades."""
+ROW_MAP = "row_map.svg"
+"""Its map: blades seen, coverage, findings."""
 VIEWER = "viewer"
 """Folder of the page of a model, below it: what the stages left, and what is written when it is published."""
 VIEWER_PAGE = f"{VIEWER}/index.html"
@@ -75,6 +77,8 @@ OUTPUTS: tuple[Output, ...] = (
     Output("mapping/mesh_defects.glb", (("timeline", "mesh_defects.glb"),), needs_trust=True),
     Output("mapping/defect_points.ply", (("map_defects", "defect_points.ply"),), needs_trust=True),
     Output(CONFIDENCE, (("timeline", "confidence.json"),), needs_trust=True),
+    Output(ROW, (("timeline", ROW),), needs_trust=True),
+    Output(ROW_MAP, (("timeline", ROW_MAP),), needs_trust=True),
     Output("gallery", (("gallery", ""),), folder=True),
     Output(f"{VIEWER}/frames", (("pictures", "frames"),), folder=True),
     Output(f"{VIEWER}/{SPRITE}", (("pictures", SPRITE),)),
@@ -98,7 +102,7 @@ TABLES: tuple[str, ...] = (
 
 OF_FURTHER_MODELS: tuple[Output, ...] = (
     Output(SPARSE, (("extend", "model"),), folder=True),
-    *(output for output in OUTPUTS if output.path.startswith(("dense/", "mapping/"))),
+    *(output for output in OUTPUTS if output.path.startswith(("dense/", "mapping/", "row"))),
     *_OF_A_VIEWER,
 )
 """Published below ``models/N/`` for every further model that came to its end."""

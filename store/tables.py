@@ -23,6 +23,7 @@ from core.errors import BadInput
 from core.scene.case import CASE_COLUMNS, CaseKind
 from core.scene.defect import TIMELINE_COLUMNS
 from core.scene.detection import DETECTION_COLUMNS
+from core.scene.on_row import ROW_COLUMNS
 from core.scene.size import SIZE_COLUMNS
 from core.stage import Facts
 from core.task_key import piece_of, stage_of
@@ -49,6 +50,7 @@ DEFECT_COLUMNS = (
     "n_detections",
     "blade",
     *SIZE_COLUMNS,
+    *ROW_COLUMNS,
 )
 """Columns of a defect in CSV, where its lists are counted."""
 _PER_TASK: dict[str, type[Base]] = {"cases": CaseRow, "metrics": MetricRow}
@@ -245,7 +247,7 @@ def flat_defect(record: Mapping[str, Any]) -> dict[str, Any]:
         "n_events": len(record.get("events") or ()),
         "n_detections": len(record.get("detections") or ()),
         "blade": record.get("blade"),
-        **{name: record.get(name) for name in SIZE_COLUMNS},
+        **{name: record.get(name) for name in (*SIZE_COLUMNS, *ROW_COLUMNS)},
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from http import HTTPStatus
 from typing import Any
 
@@ -79,13 +80,16 @@ def _cancel(services: Services, inspection_id: str, owner: str) -> None:
 async def retry(request: Request, caller: Submitter, inspection_id: str, body: Retry | None = None) -> Response:
     """Begin the next attempt: what is unchanged is taken over, parameters may change. 409 while it is active."""
     state = state_of(request)
-    await run_in_threadpool(_retry, state.services, inspection_id, caller.owner, body or Retry())
+    asked = body or Retry()
+    await run_in_threadpool(begin_again, state.services, inspection_id, caller.owner, lambda known: asked)
     state.watcher.invalidate(inspection_id)
     return await represent(state, inspection_id, caller, status=HTTPStatus.ACCEPTED)
 
 
-def _retry(services: Services, inspection_id: str, owner: str, asked: Retry) -> None:
+def begin_again(services: Services, inspection_id: str, owner: str, ask: Callable[[dict[str, Any]], Retry]) -> None:
+    """Begin the next attempt of an inspection that is over; `ask` is given its parameters and says what to change."""
     row = find_inspection(services, inspection_id, owner)
+    asked = ask(dict(row.parameters or {}))
     if shown_state(row) in ACTIVE_INSPECTION:
         raise Refused(HTTPStatus.CONFLICT, "active", "the inspection is not over; cancel it first")
     _require_stage(services, asked.from_stage)

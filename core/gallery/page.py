@@ -35,6 +35,7 @@ def gallery_page(
     colors: Mapping[str, RGB],
     evidence: Sequence[Evidence] = (),
     n_videos: int = 1,
+    row_map: str = "",
 ) -> str:
     """The whole page as one string.
 
@@ -46,6 +47,7 @@ def gallery_page(
         colors: by label, as drawn in the pictures.
         evidence: of the defects, each with a picture beside the page; empty by rules that make none.
         n_videos: videos of the run; where there are several, frames and times name theirs.
+        row_map: map of the row of blades as SVG, every text of it escaped; empty where there is none.
     """
     mapped = sum(row.outcome == Outcome.MAPPED for row in rows)
     script = _asset("gallery.js").strip()
@@ -66,6 +68,7 @@ def gallery_page(
         colors=colors,
         reasons=REASONS,
         frame_file=frame_file,
+        row_map=Markup(row_map),  # drawn by this program
         n_videos=n_videos,
     )
 

@@ -11,11 +11,13 @@ from core.mapping.surface import Surface
 from core.row.blades import Sheet, fit_sheet, radial, seen_blades
 from core.row.coverage import coverage_of, in_order, sightings
 from core.row.fit import best_contrast, refined
-from core.row.model import BladeRow, NoRow, RowStatus, UnknownRow
+from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast, overlap
 from core.row.sample import SurfaceSample, sample_surface, thinned
+from core.row.section import section_of
 from core.row.seeds import seeds
 from core.scene.views import Views
+from core.settings.row import RowSettings
 from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
@@ -39,37 +41,60 @@ On a draft surface of the sample, whose true pitch is 5.625 degrees, two draws o
 MAX_PITCH_SPREAD = 0.08
 """Of the pitch: farther from the common pitch no two neighbours may lie."""
 LEAST_BLADES = 3
+UNTOLD = RowSettings()
 LEAST_VIEWS = 3
 REPORTED_TURNS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
 ENDS_PERCENT = (0.5, 99.5)
 """Of the radii on blades: root and tip."""
 
 
-def estimate_row(mesh: Mesh, views: Views, seed: int, count: int | None = None) -> BladeRow | NoRow:
-    """The row of equal blades that a mesh shows.
+def estimate_row(mesh: Mesh, views: Views, seed: int, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
+    """The row of equal blades that a mesh shows: `search_row`, then `describe_row`."""
+    found = search_row(mesh, views, seed)
+    return found if isinstance(found, NoRow) else describe_row(mesh, views, seed, found, told)
+
+
+def search_row(mesh: Mesh, views: Views, seed: int) -> Hypothesis | NoRow:
+    """Axis and pitch of the row that a mesh shows best; whether it is a row at all `describe_row` says.
 
     Args:
         mesh: oriented towards the cameras (`core.mapping.scene.oriented`).
         views: the model's, in order of time.
         seed: of the points drawn.
-        count: number of blades in the whole row, when the user tells it; the pitch is exact then.
     """
     drawn = sample_surface(mesh, seed)
     if not len(drawn):
         return NoRow(UnknownRow.NO_SURFACE)
     if len(views) < LEAST_VIEWS:
         return NoRow(UnknownRow.TOO_FEW_VIEWS)
-    coarse, fine = thinned(drawn, SEARCH_POINTS), thinned(drawn, FIT_POINTS)
-    found = find_row(coarse, fine, views.R, views.t)
+    fine = thinned(drawn, FIT_POINTS)
+    found = find_row(thinned(drawn, SEARCH_POINTS), fine, views.R, views.t)
     if found is None:
         return NoRow(UnknownRow.NO_REPETITION)
-    found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
-    if count is not None:
-        found = Hypothesis(found.axis, 2 * np.pi / count)
+    return Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
+
+
+def describe_row(
+    mesh: Mesh, views: Views, seed: int, found: Hypothesis, told: RowSettings = UNTOLD
+) -> BladeRow | NoRow:
+    """Blades, root and tip and coverage of the row that `search_row` found in the same mesh, or why it is none.
+
+    Args:
+        mesh: as searched.
+        views: as searched.
+        seed: of the points drawn.
+        found: axis and pitch.
+        told: what the user knows; with the number of blades the pitch is exact, and the axis is fitted to it.
+    """
+    drawn = sample_surface(mesh, seed)
+    coarse, fine = thinned(drawn, SEARCH_POINTS), thinned(drawn, FIT_POINTS)
+    if told.count is not None:
+        found = refined(fine, Hypothesis(found.axis, 2 * np.pi / told.count), pitch_known=True)
+        found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
     refusal = refused(fine, found)
     if refusal is not None:
         return refusal
-    return _described(fine, coarse, found, views, Surface(mesh.vertices, mesh.faces), count)
+    return _described(fine, coarse, found, views, Surface(mesh.vertices, mesh.faces), told)
 
 
 def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, translations: F64) -> Hypothesis | None:
@@ -131,13 +156,15 @@ def _deviations(sheet: Sheet, sample: SurfaceSample, blades: NDArray[np.int64]) 
 
 
 def _described(
-    fine: SurfaceSample, coarse: SurfaceSample, row: Hypothesis, views: Views, surface: Surface, count: int | None
+    fine: SurfaceSample, coarse: SurfaceSample, row: Hypothesis, views: Views, surface: Surface, told: RowSettings
 ) -> BladeRow:
     sheet = fit_sheet(fine, row)
     blades = seen_blades(sheet, fine)
     on_blade = coarse.of(~radial(row.axis, coarse.points, coarse.normals))
     seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
-    numbers = in_order(seen, index, blades)
+    count = told.count
+    first = in_order(seen, index, blades)
+    numbers = told_numbers(first, told)
     spread = _deviations(sheet, fine, blades)
     sigma = row.pitch_rad * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
     _, radius, _ = row.axis.cylinder(fine.points[~radial(row.axis, fine.points, fine.normals)])
@@ -156,5 +183,22 @@ def _described(
         float(tip),
         fine.spacing,
         numbers,
+        section_of(sheet, fine),
         coverage_of(seen, index, numbers),
+        first[int(blades.min())] == 1,
+        EdgeName.UNKNOWN if told.edge_a is None else EdgeName(told.edge_a),
+        told.zero_blade,
+        told.direction if told.zero_blade is not None or told.direction == "reversed" else None,
     )
+
+
+def told_numbers(seen: dict[int, int], told: RowSettings) -> dict[int, int]:
+    """Numbers of the blades by index: in order of first appearance (`seen`, from 1), or as the user counts.
+
+    With a zero blade, which has the engine's number 1, they go round from the last to the first.
+    """
+    way = 1 if told.direction == "as_seen" else -1
+    if told.zero_blade is not None and told.count is not None:
+        return {index: way * (number - told.zero_blade) % told.count + 1 for index, number in seen.items()}
+    last = max(seen.values())
+    return seen if way > 0 else {index: last + 1 - number for index, number in seen.items()}

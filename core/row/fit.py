@@ -36,8 +36,15 @@ def best_contrast(sample: SurfaceSample, seed: Hypothesis) -> tuple[float, Hypot
     return -float(found.fun), _moved(seed, found.x, length)
 
 
-def refined(sample: SurfaceSample, row: Hypothesis) -> Hypothesis:
-    """A row fitted point to plane over several pitches at once, by Gauss-Newton steps with Cauchy weights."""
+def refined(sample: SurfaceSample, row: Hypothesis, pitch_known: bool = False) -> Hypothesis:
+    """A row fitted point to plane over several pitches at once, by Gauss-Newton steps with Cauchy weights.
+
+    Args:
+        sample: of the surface.
+        row: to begin at.
+        pitch_known: hold the pitch and fit the axis alone.
+    """
+    free = slice(0, 4 if pitch_known else 5)
     width = row.kernel(sample)
     for _ in range(GAUSS_NEWTON_STEPS):
         length = _radius(sample, row)
@@ -55,8 +62,9 @@ def refined(sample: SurfaceSample, row: Hypothesis) -> Hypothesis:
         if count < LEAST_PARTNERS:
             return row
         scale = np.diag(normal_matrix)
-        steps = -np.linalg.solve(normal_matrix + np.diag(1e-6 * scale + 1e-12 * scale.max()), right)
-        steps = np.clip(steps, -0.05, 0.05)
+        damped = normal_matrix + np.diag(1e-6 * scale + 1e-12 * scale.max())
+        steps = np.zeros(5)
+        steps[free] = np.clip(-np.linalg.solve(damped[free, free], right[free]), -0.05, 0.05)
         row = _moved(row, steps, length)
         if np.abs(steps).max() < 1e-5:
             break

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from core.json_files import JsonObject
 from core.row.blades import Sheet
+from core.row.section import Section
 from core.row.turn import Axis
 
 F64 = NDArray[np.float64]
@@ -36,6 +37,7 @@ class UnknownRow(StrEnum):
     NO_REPETITION = "no_repetition"
     TOO_FEW_BLADES = "too_few_blades"
     PITCH_NOT_CONSTANT = "pitch_not_constant"
+    NOT_COMPUTED = "not_computed"
 
 
 UNKNOWN_ROW: Mapping[UnknownRow, str] = {
@@ -43,21 +45,25 @@ UNKNOWN_ROW: Mapping[UnknownRow, str] = {
     UnknownRow.TOO_FEW_VIEWS: "fewer than three images are registered",
     UnknownRow.NO_REPETITION: "no turn lays the surface onto itself: one blade, a hub, or no row",
     UnknownRow.TOO_FEW_BLADES: "the surface shows fewer than three equal blades",
+    UnknownRow.NOT_COMPUTED: "the search for the row did not come to its end",
     UnknownRow.PITCH_NOT_CONSTANT: "the angle from blade to blade is not constant: no row, or a wrong model",
 }
 """What each reason means, for people."""
 
 
-class Side(StrEnum):
-    """Which part of a blade a place lies on."""
+class EdgeName(StrEnum):
+    """What an edge of a blade is."""
 
-    CONCAVE = "concave"
-    CONVEX = "convex"
-    TIP = "tip"
-    PLATFORM = "platform"
-    OTHER = "other"
-    """The surface of a row, but of none of its blades."""
+    LEADING = "leading"
+    TRAILING = "trailing"
     UNKNOWN = "unknown"
+    """Geometry does not tell, and nobody did."""
+
+    @property
+    def other(self) -> EdgeName:
+        """What the opposite edge is then."""
+        opposite = {EdgeName.LEADING: EdgeName.TRAILING, EdgeName.TRAILING: EdgeName.LEADING}
+        return opposite.get(self, self)
 
 
 @dataclass(frozen=True)
@@ -92,8 +98,17 @@ class BladeRow:
     radius_sigma: float
     """Of both radii."""
     numbers: Mapping[int, int]
-    """Of the blades seen by their index on the sheet: from 1 in order of first appearance."""
+    """Of the blades seen by their index on the sheet: from 1 in order of first appearance, or as the user counts."""
+    section: Section
     coverage: tuple[Coverage, ...] = ()
+    appears_rising: bool = True
+    """Whether blades of growing angle come into view later."""
+    edge_a: EdgeName = EdgeName.UNKNOWN
+    """Of the edge lower along the axis."""
+    zero_blade: int | None = None
+    """Which blade, in order of first appearance, has the engine's number 1; None = nobody told."""
+    direction: str | None = None
+    """`as_seen` or `reversed`, where the user numbers the blades."""
 
     @property
     def axis(self) -> Axis:
@@ -111,6 +126,13 @@ class BladeRow:
         ordered = sorted(self.numbers, key=lambda index: self.numbers[index])
         return np.array([self.sheet.start_rad + index * self.pitch_rad for index in ordered])
 
+    @property
+    def seen(self) -> dict[int, int]:
+        """Place of every blade in order of first appearance along the row, from 1, by its number."""
+        rising = sorted(self.numbers)
+        first = rising if self.appears_rising else rising[::-1]
+        return {self.numbers[index]: 1 + abs(index - first[0]) for index in first}
+
     def to_dict(self) -> JsonObject:
         """JSON form."""
         return {
@@ -125,11 +147,14 @@ class BladeRow:
             "root_radius": round(self.root_radius, 6),
             "tip_radius": round(self.tip_radius, 6),
             "radius_sigma": round(self.radius_sigma, 6),
-            "edges": {"a": "unknown", "b": "unknown"},
-            "zero_blade": None,
-            "direction": None,
+            "root": "inside",
+            "edges": {"a": str(self.edge_a), "b": str(self.edge_a.other)},
+            "zero_blade": self.zero_blade,
+            "direction": self.direction,
+            "sides": {"growing": str(self.section.sides[1]), "falling": str(self.section.sides[-1])},
+            "edges_seen": [name for name, edge in self.section.edges.items() if edge is not None],
             "blades": [
-                {"number": number, "angle_deg": round(float(np.degrees(phase)), 4)}
+                {"number": number, "seen": self.seen[number], "angle_deg": round(float(np.degrees(phase)), 4)}
                 for number, phase in zip(sorted(self.numbers.values()), self.phases, strict=True)
             ],
             "coverage": [

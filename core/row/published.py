@@ -5,37 +5,59 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from core.errors import BadInput
 from core.io.sparse import open_model
-from core.json_files import JsonObject, write_json
+from core.json_files import JsonObject, read_json, write_json
 from core.mapping.scene import oriented
-from core.outputs import DEFECTS, DETECTIONS, ROW, SPARSE, SUMMARY, SURFACE, model_folder, model_numbers
+from core.outputs import (
+    CONFIDENCE,
+    DEFECT_SURFACE,
+    DEFECTS,
+    DETECTIONS,
+    ROW,
+    ROW_MAP,
+    SPARSE,
+    SUMMARY,
+    SURFACE,
+    TIMELINE,
+    model_folder,
+    model_numbers,
+)
 from core.report.tables import write_csv
-from core.row.estimate import estimate_row
+from core.row.estimate import UNTOLD, estimate_row
+from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
-from core.row.places import on_row
+from core.row.places import blades_of_vertices
+from core.row.tables import RowOfModel, events_on_row
+from core.scene.defect import DefectRecord, EventRow
+from core.scene.detection import DetectionRow
+from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS
+from core.scene.size import Scale
 from core.scene.views import views_of
-from core.surface.ply import read_mesh
+from core.settings.row import RowSettings
+from core.surface.ply import read_mesh, write_mesh
 
 SEED = 0
+_WRITTEN = ("blade", *ROW_COLUMNS)
 
 Rows = list[JsonObject]
 """Objects of a published JSON table; older releases have fewer members, and those that are not known stay."""
 
 
-def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
-    """Find the row of every model of a result, and write ``row.json`` and the column `blade`.
+def write_row(folder: Path, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
+    """Find the row of every model of a result, and write ``row.json`` and the columns of the row.
 
-    Every file is replaced at once, ``row.json`` last. Nothing else of the tables changes, and no defect's id.
+    Every file is replaced at once, ``row.json`` last. Nothing else of the tables changes, and no defect's id. The
+    coloured surface gets the vertex property `blade`.
 
     Args:
         folder: of a published result.
-        count: blades in the whole row, when the user tells it.
+        told: what the user knows of the row.
 
     Returns:
         The row of the first model.
@@ -45,65 +67,99 @@ def write_row(folder: Path, count: int | None = None) -> BladeRow | NoRow:
     """
     if not (folder / SUMMARY).is_file():
         raise BadInput(f"{folder.name} is no result: it has no {SUMMARY}", where=str(folder))
-    found = {number: row_of(model_folder(folder, number), count) for number in model_numbers(folder)}
-    detections = _read(folder / DETECTIONS)
-    for one in detections:
-        one["blade"] = _blade(found, one.get("model"), (one["x"], one["y"], one["z"]))
-    records = _read(folder / DEFECTS)
-    findings: dict[int, Rows] = {number: [] for number in found}
-    for record in records:
-        model = int(record.get("model") or 0)
-        record["blade"] = None
-        row = found.get(model)
-        if isinstance(row, BladeRow):
-            place = on_row(row, record["centroid"], record.get("normal"), record.get("centroid_sigma"))
-            record["blade"] = blade_name(place.blade, model)
-            findings[model].append({"defect": record["id"], **place.to_dict()})
-    if detections:
-        _replace(folder / DETECTIONS, lambda path: write_json(path, detections))
-        _replace(
-            (folder / DETECTIONS).with_suffix(".csv"), lambda path: write_csv(path, list(detections[0]), detections)
-        )
+    if told.radius_mm is not None:
+        detail = "a radius changes every size: run the inspection again with it, which computes what depends on it"
+        raise BadInput(detail, where="row.radius_mm")
+    scale = Scale.from_dict(read_json(folder / SUMMARY).get("scale") or {})
+    rows, records, events = _read(folder / DETECTIONS), _read(folder / DEFECTS), _read(folder / TIMELINE)
+    detections = [DetectionRow.from_dict(row) for row in rows]
+    defects = [DefectRecord.from_dict(record) for record in records]
+    documents: dict[int, JsonObject] = {}
+    found: dict[int, BladeRow | NoRow] = {}
+    for number in model_numbers(folder):
+        where = _row_of(model_folder(folder, number), number, scale, told)
+        own = [one for one in defects if one.model == number]
+        findings: Rows = []
+        if isinstance(where, RowOfModel):
+            detections = where.detections(detections, _sigmas(model_folder(folder, number) / CONFIDENCE))
+            own, findings = where.records(own)
+        else:
+            detections = [_without(row) if row.model == number else row for row in detections]
+            own = [replace(record, blade=None, on_row=NOT_ON_A_ROW) for record in own]
+        defects = [next((new for new in own if new.id == old.id), old) for old in defects]
+        found[number] = where.row if isinstance(where, RowOfModel) else where
+        documents[number] = {**found[number].to_dict(), "findings": findings}
+    _write(folder / DETECTIONS, _changed(rows, detections))
+    visits = [EventRow.from_dict(event) for event in events]
+    _write(folder / TIMELINE, _changed(events, events_on_row(visits, defects), ("blade",)))
     if records:
-        _replace(folder / DEFECTS, lambda path: write_json(path, records))
+        changed = _changed(records, defects)
+        _replace(folder / DEFECTS, lambda path: write_json(path, changed))
     for number in sorted(found, reverse=True):
-        document = {**found[number].to_dict(), "findings": findings[number]}
-        _replace(model_folder(folder, number) / ROW, lambda path, value=document: write_json(path, value))  # type: ignore[misc]
+        _write_row(model_folder(folder, number), documents[number])
     return found[0]
 
 
-def row_of(folder: Path, count: int | None = None) -> BladeRow | NoRow:
-    """The row of one model of a result, by the files below its folder."""
+def _write_row(folder: Path, document: JsonObject) -> None:
+    _replace(folder / ROW_MAP, lambda path: path.write_text(row_map(document), encoding="utf-8"))
+    _replace(folder / ROW, lambda path: write_json(path, document))
+
+
+def _row_of(folder: Path, model: int, scale: Scale | None, told: RowSettings) -> RowOfModel | NoRow:
+    """The row of one model of a result, by the files below its folder; writes the blades of its coloured surface."""
     if not (folder / SURFACE).is_file() or not (folder / SPARSE).is_dir():
         return NoRow(UnknownRow.NO_SURFACE)
     views = views_of(open_model(folder / SPARSE))
-    return estimate_row(oriented(read_mesh(folder / SURFACE), views), views, SEED, count)
+    mesh = oriented(read_mesh(folder / SURFACE), views)
+    row = estimate_row(mesh, views, SEED, told)
+    if isinstance(row, NoRow):
+        return row
+    if (folder / DEFECT_SURFACE).is_file():
+        colored = read_mesh(folder / DEFECT_SURFACE)
+        extra = {**colored.extra, "blade": blades_of_vertices(row, colored)}
+        _replace(
+            folder / DEFECT_SURFACE, lambda path: write_mesh(path, replace(colored, extra=extra), colored.comments)
+        )
+    return RowOfModel(row, mesh, views, model, scale)
 
 
-def blade_name(number: int | None, model: int) -> str | None:
-    """A blade as the column names it: of further models, whose offset is not known, with the model's number."""
-    if number is None:
-        return None
-    return f"{model}-B{number}" if model else str(number)
+def _without(row: DetectionRow) -> DetectionRow:
+    return replace(row, blade=None, on_row=NOT_ON_A_ROW)
 
 
-def _blade(found: Mapping[int, BladeRow | NoRow], model: int | None, place: Sequence[float | None]) -> str | None:
-    known = [float(value) for value in place if value is not None]
-    row = found.get(int(model or 0))
-    if len(known) < 3 or not isinstance(row, BladeRow):
-        return None
-    return blade_name(on_row(row, known, None, None).blade, int(model or 0))
+def _sigmas(path: Path) -> dict[int, float | None]:
+    """Standard deviation of the place of every placed detection, model units."""
+    return {row["id"]: row["position_sigma"] for row in read_json(path)} if path.is_file() else {}
+
+
+def _changed(
+    rows: Rows, typed: Iterable[DetectionRow | DefectRecord | EventRow], names: tuple[str, ...] = _WRITTEN
+) -> Rows:
+    """The objects with the columns of the row, and the unit of these where they have none."""
+    changed = []
+    for row, new in zip(rows, typed, strict=True):
+        values: Mapping[str, object] = new.to_dict()
+        unit = {"length_unit": values["length_unit"]} if values.get("root_distance") is not None else {}
+        changed.append({**row, **{name: values[name] for name in names}, **unit})
+    return changed
+
+
+def _write(path: Path, rows: Rows) -> None:
+    """A table in both its forms; one without rows stays."""
+    if rows:
+        _replace(path, lambda beside: write_json(beside, rows))
+        _replace(path.with_suffix(".csv"), lambda beside: write_csv(beside, list(rows[0]), rows))
 
 
 def _read(path: Path) -> Rows:
     try:
-        rows: Rows = json.loads(path.read_text(encoding="utf-8"))
+        rows: Rows = read_json(path)
     except FileNotFoundError:
         return []
     return rows
 
 
-def _replace(path: Path, write: Callable[[Path], None]) -> None:
+def _replace(path: Path, write: Callable[[Path], object]) -> None:
     """Write beside the file and put it in its place at once."""
     beside = path.with_name(f".{path.name}.new")
     write(beside)

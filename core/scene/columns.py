@@ -38,13 +38,20 @@ class Column:
 
 
 def columns_of(declared: type[Any]) -> tuple[Column, ...]:
-    """Columns of the table whose rows are of this dataclass.
+    """Columns of the table whose rows are of this dataclass; those of a field that is a dataclass stand in its place.
 
     Raises:
         TypeError: a field is neither a number nor a text, or can be more than one of them.
     """
     kinds, meanings = get_type_hints(declared), _docstrings(declared)
-    return tuple(_column(field.name, kinds[field.name], meanings.get(field.name, "")) for field in fields(declared))
+    found: list[Column] = []
+    for field in fields(declared):
+        kind = kinds[field.name]
+        if is_dataclass(kind) and isinstance(kind, type):
+            found += columns_of(kind)
+        else:
+            found.append(_column(field.name, kind, meanings.get(field.name, "")))
+    return tuple(found)
 
 
 def _column(name: str, kind: Any, meaning: str) -> Column:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from core.json_files import JsonObject
+from core.scene.on_row import NOT_ON_A_ROW, RowColumns
 from core.scene.size import LengthUnit, Size
 
 
@@ -66,6 +67,8 @@ class EventRow:
     """Probability that the defect is real and its place right."""
     video: int = 0
     """Number of the video that shows it, from 0 in the order given."""
+    blade: str | None = None
+    """Blade that the defect lies on, where the row of blades is known."""
 
     def to_dict(self) -> JsonObject:
         """Flat JSON form, keys in the order of the columns."""
@@ -170,6 +173,8 @@ class DefectRecord:
     """Published path of its picture."""
     size: Size | None = None
     """How large it is on the surface."""
+    on_row: RowColumns = NOT_ON_A_ROW
+    """Where on its blade it lies."""
 
     def to_dict(self) -> JsonObject:
         """JSON form, keys in the order that readers know."""
@@ -195,7 +200,12 @@ class DefectRecord:
             "blade": self.blade,
         }
         found = {name: value for name, value in row.items() if value is not None or name not in _ONLY_BY_CASTING}
-        return found if self.size is None else {**found, **self.size.to_dict()}
+        if self.size is not None:
+            found |= self.size.to_dict()
+        found |= asdict(self.on_row)
+        if self.on_row.root_distance is not None:
+            found["length_unit"] = MODEL_UNIT if self.size is None else self.size.unit
+        return found
 
     @classmethod
     def from_dict(cls, row: JsonObject) -> DefectRecord:
@@ -221,6 +231,7 @@ class DefectRecord:
             approximate_detections=None if estimated is None else tuple(estimated),
             evidence=row.get("evidence"),
             size=Size.from_dict(row) if "size_sigma" in row else None,
+            on_row=RowColumns.from_dict(row),
         )
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from enum import StrEnum
 from typing import Any
 
 from core.geometry.boxes import Box
 from core.json_files import JsonObject
 from core.scene.frame import SourceFrame
+from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS, RowColumns
 from core.scene.size import LengthUnit, SizeFrom
 from core.videos import moment
 
@@ -163,7 +164,7 @@ class DetectionRow:
     confidence: float | None
     """Probability that the detection is real and its place right."""
     blade: str | None
-    """Blade that it lies on, once `bladeatlas row` found the row."""
+    """Blade that it lies on, where the row of blades is known; of a further model `1-B4` is blade 4 of model 1."""
     defect_id: int | None
     """Record of defects.json that it belongs to."""
     model: int | None
@@ -183,9 +184,11 @@ class DetectionRow:
     area_sigma: float | None = None
     """Standard deviation of the area."""
     length_unit: LengthUnit | None = None
-    """`mm` where a scale is known, else `model`: the unit of the model's coordinates; empty without a length."""
+    """`mm` where a scale is known, else `model`: the unit of the model's coordinates; empty without any length."""
     size_from: SizeFrom | None = None
     """What the outline is known from: `mask`, or `box` for the ellipse in the box."""
+    on_row: RowColumns = NOT_ON_A_ROW
+    """Columns of where on its blade it lies."""
 
     @property
     def moment_s(self) -> float:
@@ -199,7 +202,8 @@ class DetectionRow:
 
     def to_dict(self) -> JsonObject:
         """Flat JSON form, keys in the order of the columns."""
-        return asdict(self)
+        own = {name: value for name, value in self.__dict__.items() if name != "on_row"}
+        return {**own, **asdict(self.on_row)}
 
     @classmethod
     def from_dict(cls, row: JsonObject) -> DetectionRow:
@@ -212,10 +216,14 @@ class DetectionRow:
             "length_unit": None if row.get("length_unit") is None else LengthUnit(row["length_unit"]),
             "size_from": None if row.get("size_from") is None else SizeFrom(row["size_from"]),
         }
-        return cls(**{**row, **enums})
+        own = {name: value for name, value in row.items() if name not in ROW_COLUMNS}
+        return cls(**{**own, **enums}, on_row=RowColumns.from_dict(row))
 
 
-DETECTION_COLUMNS: tuple[str, ...] = tuple(DetectionRow.__dataclass_fields__)
+DETECTION_COLUMNS: tuple[str, ...] = (
+    *(field.name for field in fields(DetectionRow) if field.name != "on_row"),
+    *ROW_COLUMNS,
+)
 """Columns of ``mapping/detections.csv``."""
 
 

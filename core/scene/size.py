@@ -42,6 +42,8 @@ class ScaleSource(StrEnum):
 
     POINTS = "points"
     """A known length between two pixels of a frame."""
+    ROW = "row"
+    """A known radius of the row of blades."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ class SizeColumns:
     depth_sigma: float | None = None
     """Standard deviation of the depth."""
     length_unit: LengthUnit | None = None
-    """`mm` where a scale is known, else `model`: the unit of the model's coordinates; empty without a length."""
+    """`mm` where a scale is known, else `model`: the unit of the model's coordinates; empty without any length."""
     size_from: SizeFrom | None = None
     """What its outline is known from: `mask`, or `box` for the ellipse in its boxes."""
 

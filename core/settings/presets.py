@@ -12,6 +12,7 @@ from core.errors import BadInput
 from core.names import nearest
 from core.settings import groups, reading
 from core.settings.base import Group, option
+from core.settings.row import RowSettings
 from core.settings.scale import ScaleSettings
 
 PresetName = Literal["default", "thesis", "draft"]
@@ -39,6 +40,7 @@ class Settings(Group):
     mesh: groups.MeshSettings = groups.MeshSettings()
     mapping: groups.MappingSettings = groups.MappingSettings()
     timeline: groups.TimelineSettings = groups.TimelineSettings()
+    row: RowSettings = RowSettings()
     scale: ScaleSettings = ScaleSettings()
     gallery: groups.GallerySettings = groups.GallerySettings()
     compute: groups.ComputeSettings = groups.ComputeSettings()

@@ -19,6 +19,7 @@ from core.io.frames import read_frames
 from core.io.sparse import read_poses
 from core.io.surface import defect_mesh
 from core.io.timeline import read_defects, read_events
+from core.outputs import ROW_MAP
 from core.render import Renderer
 from core.report.load import join_detections
 from core.scene.frame import SourceFrame
@@ -57,7 +58,9 @@ def run(task: StageTask) -> StageResult:
         evidence_at.setdefault(used[one.frame_index].source, []).append(one)
     _write_frames(task, pictures, colors, evidence_at)
     _write_views(task)
-    page = gallery_page(chosen, len(frames), rows, defects, colors, evidence, len(task.recordings))
+    drawn = task.input("timeline") / ROW_MAP
+    row_map = drawn.read_text(encoding="utf-8") if drawn.is_file() else ""
+    page = gallery_page(chosen, len(frames), rows, defects, colors, evidence, len(task.recordings), row_map)
     (task.out / "index.html").write_text(page, encoding="utf-8", newline="\n")
     return StageResult({"n_images": len(chosen), "n_frames": len(frames)})
 

@@ -9,9 +9,17 @@ from core.io.annotations import read_detections, write_rows
 from core.io.sparse import read_model, write_cameras
 from core.io.surface import defect_glb, defect_mesh, supported_mesh
 from core.io.timeline import write_timeline
+from core.json_files import JsonObject, write_json
 from core.mapping.coloring import blend
+from core.mapping.scene import oriented
 from core.measure.scale import find_scale
-from core.scene.methods import Grouping
+from core.outputs import ROW, ROW_MAP
+from core.row.files import read_blades
+from core.row.map import row_map
+from core.row.model import BladeRow, NoRow, UnknownRow
+from core.row.places import blades_of_vertices
+from core.row.tables import RowOfModel, events_on_row, scale_of_row
+from core.scene.methods import Grouped, Grouping
 from core.scene.views import Views, views_of
 from core.stage import StageResult, StageTask
 from core.stages.map_defects import open_scene_of, world_comments
@@ -31,11 +39,20 @@ def run(task: StageTask) -> StageResult:
     """
     mesh = read_mesh(supported_mesh(task.input("mesh")))
     views = views_of(read_model(task.input("extend")))
-    found = _grouping(task, mesh, views).group()
+    row = read_blades(task.input("blades")) if task.has("blades") else NoRow(UnknownRow.NOT_COMPUTED)
+    found = _grouping(task, mesh, views, row).group()
+    extra = {**mesh.extra, "defect_id": found.vertex_defect}
+    findings: list[JsonObject] = []
+    if isinstance(row, BladeRow):
+        task.report(3, 4, "finding the blades of the defects")
+        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.piece, found.scale))
+        extra["blade"] = blades_of_vertices(row, mesh)
+    document = {**row.to_dict(), "findings": findings}
+    write_json(task.out / ROW, document)
+    (task.out / ROW_MAP).write_text(row_map(document), encoding="utf-8")
     write_timeline(task.out, found.events, found.defects, found.confidences)
     write_rows(task.out, found.rows)
     task.report(3, 4, "writing the coloured surface")
-    extra = {**mesh.extra, "defect_id": found.vertex_defect}
     colored = replace(mesh, colors=blend(mesh.colors, found.weight), extra=extra)
     write_mesh(defect_mesh(task.out), colored, world_comments(task))
     if found.scale is None:
@@ -48,14 +65,23 @@ def run(task: StageTask) -> StageResult:
     return StageResult(dict(found.facts))
 
 
-def _grouping(task: StageTask, mesh: Mesh, views: Views) -> Grouping:
+def _on_row(found: Grouped, where: RowOfModel) -> tuple[Grouped, list[JsonObject]]:
+    """What was found with the columns of the row, and the findings of ``row.json``."""
+    sigmas = {int(one["id"]): one["position_sigma"] for one in found.confidences}
+    records, findings = where.records(found.defects)
+    rows, events = where.detections(found.rows, sigmas), events_on_row(found.events, records)
+    return replace(found, rows=tuple(rows), events=tuple(events), defects=tuple(records)), findings
+
+
+def _grouping(task: StageTask, mesh: Mesh, views: Views, row: BladeRow | NoRow) -> Grouping:
     placed = task.input("map_defects")
     if task.settings.mapping.method == "thesis":
         return ThesisGrouping(placed, mesh, views, task.settings.timeline, task.report)
     scene, frames = open_scene_of(task)
     start = Start.after(task.facts, task.piece)
     detections = {one.id: one for one in read_detections(task.input("annotations"))}
-    scale = find_scale(task.settings.scale, scene, frames)
+    of_row = scale_of_row(row, task.settings.row)
+    scale = find_scale(task.settings.scale, scene, frames, [] if of_row is None else [of_row])
     doubts, settings = _doubts(task), task.settings.mapping
     return SurfaceGrouping(
         placed, detections, scale, scene, frames, mesh, doubts, start, settings, task.threads, task.report

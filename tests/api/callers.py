@@ -54,6 +54,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("POST", "/v1/inspections"): Scope.SUBMIT,
     ("PATCH", _ONE): Scope.SUBMIT,
     ("POST", f"{_ONE}/retry"): Scope.SUBMIT,
+    ("PATCH", f"{_ONE}/row"): Scope.SUBMIT,
     ("POST", f"{_ONE}/cancel"): Scope.SUBMIT,
     ("GET", "/v1/session"): ANY,
     ("POST", "/v1/session"): ANY,
@@ -82,6 +83,7 @@ OF_AN_ACCOUNT = ("{inspection_id}", "{upload_id}", "{key_id}", "{account_id}")
 BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/v1/inspections"): {"json": {"video_upload": "0" * 32}},
     ("PATCH", _ONE): {"json": {"label": "renamed"}},
+    ("PATCH", f"{_ONE}/row"): {"json": {"count": 64}},
     ("POST", "/v1/keys"): {"json": {"name": "another", "scopes": ["manage"]}},
     ("POST", "/v1/accounts"): {"json": {"id": "new"}},
     ("PATCH", "/v1/accounts/{account_id}"): {"json": {"name": "renamed"}},

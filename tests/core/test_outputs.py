@@ -17,5 +17,7 @@ def test_nothing_that_says_where_defects_are_is_published_of_a_refused_model() -
             "mapping/defect_points.ply",
             "mapping/confidence.json",
             "viewer/surface.glb",
+            "row.json",
+            "row_map.svg",
             "viewer/frames",
         }

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
 import numpy as np
 import pytest
 
+from bench.scenes.blades import surface_point
 from core.row.blades import fit_sheet, seen_blades
-from core.row.estimate import MIN_CONTRAST, estimate_row, refused
-from core.row.model import BladeRow, NoRow, RowStatus, UnknownRow
+from core.row.estimate import MIN_CONTRAST, estimate_row, refused, told_numbers
+from core.row.files import read_blades, read_found, write_blades, write_found
+from core.row.map import row_map
+from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis
+from core.row.places import normals_at, on_row
 from core.row.sample import sample_surface, thinned
+from core.row.section import _sides
+from core.row.tables import scale_of_row
 from core.row.turn import Axis
+from core.scene.on_row import Side
+from core.settings.row import RowSettings
 from core.surface.ply import Mesh
-from tests.core.making_blades import PITCH_RAD, blade_of, blades, walk
+from tests.core.making_blades import PITCH_RAD, SCENE, blade_of, blades, walk
 
 TRUE_AXIS = Axis(np.array([0.0, 0.0, 1.0]), np.zeros(3))
 PITCH_WITHIN = 0.005
@@ -66,6 +79,96 @@ def test_the_row_as_json_says_what_is_not_known(three: BladeRow) -> None:
     assert row["edges"] == {"a": "unknown", "b": "unknown"}
     assert row["zero_blade"] is None
     assert [blade["number"] for blade in row["blades"]] == [1, 2, 3]
+    assert [blade["seen"] for blade in row["blades"]] == [1, 2, 3]
+
+
+def test_a_row_is_the_same_after_it_was_written(three: BladeRow, tmp_path: Path) -> None:
+    write_blades(tmp_path, three)
+    again = read_blades(tmp_path)
+    assert isinstance(again, BladeRow)
+    assert again.to_dict() == three.to_dict()
+    points = blades(3).vertices[::50]
+    assert np.array_equal(again.sheet.position(points), three.sheet.position(points))
+    assert again.section == three.section
+    for found in (Hypothesis(TRUE_AXIS, PITCH_RAD), NoRow(UnknownRow.NO_SURFACE)):
+        write_found(tmp_path, found)
+        assert repr(read_found(tmp_path)) == repr(found)
+
+
+def test_the_side_that_bends_out_is_convex(three: BladeRow) -> None:
+    """Of the scene's blades the upper side is convex; it faces growing angles about the scene's axis."""
+    way = 1 if three.axis.direction[2] > 0 else -1
+    assert three.section.sides == {way: Side.CONVEX, -way: Side.CONCAVE}
+    assert all(three.section.edges.values())
+
+
+def test_a_side_is_unknown_where_both_look_alike() -> None:
+    assert _sides({1: 0.1, -1: 0.1}) == {1: Side.UNKNOWN, -1: Side.UNKNOWN}
+    assert _sides({1: 0.1, -1: None}) == {1: Side.CONVEX, -1: Side.UNKNOWN}
+    assert _sides({1: None, -1: -0.1}) == {1: Side.CONVEX, -1: Side.CONCAVE}
+    assert _sides({1: 0.001, -1: None}) == {1: Side.UNKNOWN, -1: Side.UNKNOWN}
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_places_of_every_side_have_their_span_chord_and_edge(three: BladeRow, side: int) -> None:
+    spans, chords = np.meshgrid([0.2, 0.5, 0.8], [0.0, 0.08, 0.3, 0.6, 0.9])
+    mesh = blades(3)
+    true = list(zip(spans.ravel(), chords.ravel(), strict=True))
+    places = np.array([surface_point(SCENE, 1, span, chord, side) for span, chord in true])
+    lower = three.axis.direction[2] > 0  # the leading edge is the one at lower z
+    told = replace(three, edge_a=EdgeName.LEADING if lower else EdgeName.TRAILING)
+    found = on_row(told, places, normals_at(mesh, places), [None] * len(places))
+    assert {one.blade for one in found} == {2}
+    for one, (span, chord) in zip(found, true, strict=True):
+        assert one.columns.span == pytest.approx(span, abs=0.03)
+        assert one.columns.chord == pytest.approx(chord, abs=0.08)
+        if 0.3 <= chord <= 0.6:
+            assert one.columns.side == (Side.CONVEX if side > 0 else Side.CONCAVE)
+        if chord == 0.0:
+            assert one.columns.side == Side.LEADING_EDGE
+            assert one.columns.edge_distance == pytest.approx(0.0, abs=2.5)
+    unnamed = on_row(three, places, normals_at(mesh, places), [None] * len(places))
+    assert all(one.columns.chord is None for one in unnamed)
+    assert Side.LEADING_EDGE not in {one.columns.side for one in unnamed}
+
+
+@pytest.mark.parametrize(
+    ("options", "numbers"),
+    [
+        ({}, {4: 1, 5: 2, 6: 3}),
+        ({"direction": "reversed"}, {4: 3, 5: 2, 6: 1}),
+        ({"count": 64, "zero_blade": 2}, {4: 64, 5: 1, 6: 2}),
+        ({"count": 64, "zero_blade": 2, "direction": "reversed"}, {4: 2, 5: 1, 6: 64}),
+        ({"count": 64, "zero_blade": -3}, {4: 5, 5: 6, 6: 7}),
+    ],
+)
+def test_numbers_go_round_as_the_user_counts(options: dict[str, Any], numbers: dict[int, int]) -> None:
+    assert told_numbers({4: 1, 5: 2, 6: 3}, RowSettings(**options)) == numbers
+
+
+def test_a_radius_that_is_told_gives_the_scale(three: BladeRow) -> None:
+    scale = scale_of_row(three, RowSettings(radius_mm=2 * three.root_radius))
+    assert scale is not None
+    assert scale.value == pytest.approx(2.0)
+    assert 0.03 < scale.share < 0.04, "the pitch is known to 3 %, and radius and pitch trade"
+    assert scale_of_row(three, RowSettings()) is None
+    place = on_row(three, blades(3).vertices[2000:2001], np.array([[0.0, 1.0, 0.0]]), [0.1])[0]
+    distance = place.columns.root_distance
+    assert distance is not None
+    assert place.scaled(scale).columns.root_distance == pytest.approx(2.0 * distance, abs=1e-5)
+
+
+def test_the_map_shows_every_blade_and_finding_and_no_markup_of_a_label(three: BladeRow) -> None:
+    place = {"blade": 2, "span": 0.5, "side": "convex", "from_edge_a": 0.2}
+    findings = [{"defect": 7, "label": "<script>", **place}, {"defect": 8, "label": "a", **place, "blade": None}]
+    drawn = row_map({**three.to_dict(), "findings": findings})
+    root = ElementTree.fromstring(drawn)
+    texts = [one.text for one in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"1", "2", "3", "D7"} <= set(texts)
+    assert "D8" not in texts
+    assert any("on no blade: 1" in str(text) for text in texts)
+    assert "<script>" not in drawn
+    assert "unknown" in row_map({**NoRow(UnknownRow.NO_REPETITION).to_dict(), "findings": []})
 
 
 @pytest.mark.parametrize("count", [3, 5])

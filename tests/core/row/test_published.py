@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 
 from bench.scenes.blades import surface_point
 from cli.main import main
-from cli.row import told_count
+from cli.row import told_row
 from core.errors import BadInput
 from core.io.timeline import read_defects
 from core.report.csv_form import read_csv
@@ -21,6 +22,7 @@ from core.report.tables import write_csv
 from core.row.model import NoRow, UnknownRow
 from core.row.published import write_row
 from core.scene.detection import DETECTION_COLUMNS
+from core.scene.on_row import ROW_COLUMNS
 from core.surface.ply import write_mesh
 from tests.core.making_blades import SCENE, blades, walk
 from tests.core.making_rows import defect, mapped, unplaced
@@ -70,9 +72,15 @@ def test_row_of_a_published_result(tmp_path: Path, capsys: pytest.CaptureFixture
     assert numbers in ([1, 2, 3, 3], [3, 2, 1, 1])
     assert [record.blade for record in read_defects(folder / "mapping")] == told[:4]
     assert [one["blade"] for one in read_csv(folder / "mapping" / "detections.csv")] == [*told[:4], ""]
-    assert after == [{name: value for name, value in one.items() if name != "blade"} for one in before]
+    assert [_without_row(one) for one in after] == [_without_row(one) for one in before]
+    assert [one["side"] for one in after] == ["convex"] * 4 + [None]
+    assert [one["length_unit"] for one in after] == ["model"] * 4 + [None]
     assert not list(folder.rglob("*.new"))
     assert "3 blades seen; findings on blade 1:" in capsys.readouterr().out
+
+
+def _without_row(row: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in row.items() if name not in ("blade", "length_unit", *ROW_COLUMNS)}
 
 
 def test_a_result_without_a_surface_has_no_row(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,4 +100,4 @@ def test_a_folder_that_is_no_result_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("pair", ["count=three", "count=6", "count=181", "blades=64", "count"])
 def test_what_a_row_cannot_be_told(pair: str) -> None:
     with pytest.raises(BadInput):
-        told_count([pair])
+        told_row([pair])

@@ -9,7 +9,8 @@ from tests.core.making_rows import detection, mapped, unplaced
 CONTRACT = (
     "id key time_s label score box_x1 box_y1 box_x2 box_y2 frame_index outcome reason rung support_points "
     "x y z confidence blade defect_id model video "
-    "length length_sigma width width_sigma area area_sigma length_unit size_from"
+    "length length_sigma width width_sigma area area_sigma length_unit size_from "
+    "side span span_sigma chord chord_sigma edge_distance edge_distance_sigma root_distance root_distance_sigma"
 )
 
 

@@ -1,0 +1,62 @@
+"""Where on the row of blades a place lies, as columns of the tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from enum import StrEnum
+from typing import Any
+
+
+class Side(StrEnum):
+    """Which part of a blade a place lies on."""
+
+    CONCAVE = "concave"
+    CONVEX = "convex"
+    LEADING_EDGE = "leading_edge"
+    TRAILING_EDGE = "trailing_edge"
+    EDGE = "edge"
+    """One of the two edges, of which nobody told whether it is the leading one."""
+    TIP = "tip"
+    PLATFORM = "platform"
+    OTHER = "other"
+    """The surface of a row, but of none of its blades."""
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class RowColumns:
+    """Columns that say where on a blade a place lies, all empty while no row is known; the fields are their names."""
+
+    side: Side | None = None
+    """Part of the blade: `concave`, `convex`, `leading_edge`, `trailing_edge`, `edge`, `tip`; `platform`, `other` or
+    `unknown`."""
+    span: float | None = None
+    """Place from root (0) to tip (1), of what was seen of the blades."""
+    span_sigma: float | None = None
+    """Standard deviation of the span."""
+    chord: float | None = None
+    """Place from leading (0) to trailing edge (1); only where both were seen and it was told which is which."""
+    chord_sigma: float | None = None
+    """Standard deviation of the chord."""
+    edge_distance: float | None = None
+    """Distance along the chord to the nearest edge that was seen, in `length_unit`."""
+    edge_distance_sigma: float | None = None
+    """Standard deviation of the distance to the edge."""
+    root_distance: float | None = None
+    """Distance from the root along the radius, in `length_unit`."""
+    root_distance_sigma: float | None = None
+    """Standard deviation of the distance from the root."""
+
+    @classmethod
+    def from_dict(cls, row: Mapping[str, Any]) -> RowColumns:
+        """From a row of a table; columns that an older one lacks are empty."""
+        side = row.get("side")
+        values = {name: row.get(name) for name in ROW_COLUMNS if name != "side"}
+        return cls(side=None if side is None else Side(side), **values)
+
+
+NOT_ON_A_ROW = RowColumns()
+"""All of them empty."""
+ROW_COLUMNS: tuple[str, ...] = tuple(field.name for field in fields(RowColumns))
+"""Columns of the place on the row."""

@@ -26,6 +26,7 @@ from store.models import (
     Inspection,
     Reservation,
     Result,
+    ReviewEntry,
     Task,
     Upload,
     Worker,
@@ -72,7 +73,7 @@ class Retention:
             inspection = lock_inspection(session, inspection_id)
             if inspection.deleted_at is None or inspection.state in ACTIVE_INSPECTION:
                 return
-            for table in (Task, Artifact):
+            for table in (Task, Artifact, ReviewEntry):
                 columns = table.__table__.columns
                 session.execute(delete(table).where(columns["inspection_id"] == inspection_id))
             clear_rows(session, inspection_id)

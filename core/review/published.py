@@ -22,7 +22,10 @@ SCHEMA_VERSION = 2
 MAX_RECORDS = 100_000
 """Records that one result may have."""
 _MAX_BYTES = 64 << 20
-_MEMBERS = ("schema_version", "title", "fingerprint", "model", "records", "inspection", "revision", "severities")
+_MEMBERS = (
+    *("schema_version", "title", "fingerprint", "model", "records"),
+    *("inspection", "revision", "severities", "may_review"),
+)
 
 
 @dataclass(frozen=True)

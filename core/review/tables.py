@@ -29,26 +29,40 @@ REVIEW_COLUMNS: tuple[str, ...] = (
 
 def review_cells(one: ReviewedFinding) -> JsonObject:
     """The cells of a finding by `REVIEW_COLUMNS`; None where nobody said anything. Notes: one a line."""
-    review = one.review
-    x, y, z = human_place(one) or (None, None, None)
-    measure = review.measures[-1] if review.measures else {}
+    return cells_of(one.name, review_values(one))
+
+
+def review_values(one: ReviewedFinding) -> JsonObject:
+    """The same nested, for JSON: of a finding that people made, label and place are theirs too."""
+    place, label = human_place(one), one.review.label
+    made = one.target.label if one.target.kind == TargetKind.ADDED else None
+    values = {"label": made if label is None else label, "point": None if place is None else list(place)}
+    return {**one.review.to_dict(), **values}
+
+
+def cells_of(name: str | None, values: JsonObject | None) -> JsonObject:
+    """The cells of what `review_values` gave; all empty for a row that belongs to no finding."""
+    if values is None:
+        return dict.fromkeys(REVIEW_COLUMNS)
+    x, y, z = values["point"] or (None, None, None)
+    measure = values["measures"][-1] if values["measures"] else {}
     return {
-        "finding": one.name,
-        "review_state": review.state,
-        "review_reason": review.reason or None,
-        "human_label": review.label if review.label is not None else _made_label(one),
-        "human_blade": review.blade,
-        "severity": review.severity,
+        "finding": name,
+        "review_state": values["state"],
+        "review_reason": values["reason"],
+        "human_label": values["label"],
+        "human_blade": values["blade"],
+        "severity": values["severity"],
         "human_x": x,
         "human_y": y,
         "human_z": z,
         "human_length": measure.get("length"),
         "human_length_sigma": measure.get("sigma"),
         "human_length_unit": measure.get("unit"),
-        "merged_into": review.merged_into,
-        "notes": "\n".join(note.text for note in review.notes) or None,
-        "reviewed_by": review.by or None,
-        "reviewed_at": review.time or None,
+        "merged_into": values["merged_into"],
+        "notes": "\n".join(note["text"] for note in values["notes"]) or None,
+        "reviewed_by": values["by"],
+        "reviewed_at": values["time"],
     }
 
 
@@ -57,12 +71,3 @@ def human_place(one: ReviewedFinding) -> tuple[float, float, float] | None:
     if one.review.point is not None:
         return one.review.point
     return one.target.centroid if one.target.kind == TargetKind.ADDED else None
-
-
-def nobody_said() -> JsonObject:
-    """The cells of a row that belongs to no finding."""
-    return dict.fromkeys(REVIEW_COLUMNS)
-
-
-def _made_label(one: ReviewedFinding) -> str | None:
-    return one.target.label if one.target.kind == TargetKind.ADDED else None

@@ -20,8 +20,9 @@ from store.inspections import mark_deleted
 from store.integration_models import InspectionEvent, MetadataEntry
 from store.keys import Keys
 from store.leasing import input_files, metadata_of
-from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, ReviewEntry, Upload
+from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Upload
 from store.plan import Plan
+from store.review_models import ReviewEntry
 from store.reviews import Reviews
 
 _PAGE = 500

@@ -26,12 +26,12 @@ from store.models import (
     Inspection,
     Reservation,
     Result,
-    ReviewEntry,
     Task,
     Upload,
     Worker,
 )
 from store.publishing import artifact_prefix
+from store.review_models import ReviewEntry
 from store.tables import clear_rows
 
 _IDEMPOTENCY_DAYS = 3

@@ -18,7 +18,7 @@ from core.review.words import Action
 from store.db import Database
 from store.events import EventType, tell
 from store.leasing import lock_inspection
-from store.models import ReviewEntry
+from store.review_models import ReviewEntry
 from store.tables import DEFECTS, RowFilter, read_rows
 
 

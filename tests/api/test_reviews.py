@@ -79,11 +79,8 @@ def test_severities_are_a_setting(backend: Backend, path: str) -> None:
     assert say(client, path, 0, "severity", value="blend").status_code == 201
     refused = say(client, path, 1, "severity", value="monitor")
     assert (refused.status_code, refused.json()["code"]) == (422, "bad_severity")
-    handed: dict[str, Any] = {
-        "schema_version": 2,
-        "records": [{**client.get(f"{path}/reviews").json()["records"][0], "id": "x"}],
-    }
-    handed["records"][0]["value"] = "monitor"
+    other = {**client.get(f"{path}/reviews").json()["records"][0], "id": "x", "value": "monitor"}
+    handed = {"schema_version": 2, "records": [other]}
     assert client.post(f"{path}/reviews/import", json=handed).status_code == 422
 
 

@@ -84,6 +84,7 @@ class ReviewList(BaseModel):
                 "records": [_RECORD],
                 "severities": ["serviceable", "monitor", "reject"],
                 "may_review": True,
+                "you": "anna",
             }
         }
     )
@@ -94,6 +95,7 @@ class ReviewList(BaseModel):
     records: list[ReviewItem]
     severities: list[str] = Field(description="what a record of the action `severity` may say here")
     may_review: bool = Field(description="whether the caller may write records")
+    you: str = Field(description="`by` of the records that the caller writes")
 
 
 class Handover(BaseModel):
@@ -112,6 +114,7 @@ class Handover(BaseModel):
     revision: int | None = None
     severities: list[str] | None = None
     may_review: bool | None = None
+    you: str | None = None
 
 
 class HandedOver(BaseModel):

@@ -46,6 +46,7 @@ def listing(
         records=[_item(one) for one in records],
         severities=list(state.services.settings.severity_names()),
         may_review=Scope.REVIEW in caller.scopes,
+        you=_author(state, caller).name,
     )
 
 

@@ -24,7 +24,7 @@ MAX_RECORDS = 100_000
 _MAX_BYTES = 64 << 20
 _MEMBERS = (
     *("schema_version", "title", "fingerprint", "model", "records"),
-    *("inspection", "revision", "severities", "may_review"),
+    *("inspection", "revision", "severities", "may_review", "you"),
 )
 
 

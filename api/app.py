@@ -25,6 +25,7 @@ from api.routes import (
     keys,
     options,
     pages,
+    reviews,
     row,
     session,
     stages,
@@ -47,8 +48,8 @@ from store.settings import deployment_settings
 from store.web_sessions import WebSessions
 
 _ROUTERS = (
-    *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, artifacts, viewer, frames),
-    *(session, keys, accounts, audit, events),
+    *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, reviews),
+    *(artifacts, viewer, frames, session, keys, accounts, audit, events),
 )
 
 

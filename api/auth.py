@@ -131,6 +131,8 @@ Reader = Annotated[Caller, Depends(requires(Scope.READ))]
 """Parameter of a route that shows what the caller's account has, or what concerns everybody."""
 Submitter = Annotated[Caller, Depends(requires(Scope.SUBMIT))]
 """Parameter of a route that sends, starts, stops or deletes something of the caller's account."""
+Reviewer = Annotated[Caller, Depends(requires(Scope.REVIEW))]
+"""Parameter of a route that says something of findings of the caller's account."""
 Administrator = Annotated[Caller, Depends(requires(Scope.ADMIN))]
 """Parameter of a route about all accounts."""
 AnyCaller = Annotated[Caller, Depends(caller)]

@@ -74,18 +74,23 @@ class Source:
         """Some of them; `TableChanged` when they are not those that `after` belongs to any more."""
         return read_page(self.db, self.inspection_id, self.table, self.chosen, limit, after)
 
+    def tag(self) -> object:
+        """What else than the version of the table the rows depend on."""
+        return None
+
 
 def paged(request: Request, source: Source, form: TableForm, asked: Asked) -> Response:
     """One page with a `Link` to the next, or all rows, page by page."""
     after = None if asked.cursor is None else Position.from_cursor(source.table, asked.cursor)
+    tag = source.tag()  # before the rows: newer rows under an older tag are only asked for again
     if asked.if_none_match is not None:
         version = table_version(source.db, source.inspection_id, source.table)
-        headers = _headers(request, source, form, version)
+        headers = _headers(request, source, form, (version, tag))
         if matches(asked.if_none_match, headers["ETag"]):
             return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
     # The first page is read before the status is sent: a database that is away is a 503 and no torso.
     first = source.page(asked.limit or _PIECE, after)
-    headers = _headers(request, source, form, first.version)
+    headers = _headers(request, source, form, (first.version, tag))
     if asked.limit is not None and first.next is not None:
         headers["Link"] = next_link(request, first.next.to_cursor(source.table))
     if asked.limit is not None or first.next is None:
@@ -116,7 +121,7 @@ def _piece(source: Source, form: TableForm, after: Position) -> tuple[bytes, Pos
     return form.rows(page.rows, first=False), page.next
 
 
-def _headers(request: Request, source: Source, form: TableForm, version: int) -> dict[str, str]:
+def _headers(request: Request, source: Source, form: TableForm, version: tuple[int, object]) -> dict[str, str]:
     """A strong tag: rows of one version, asked for in one way, are written to the same bytes by one program."""
     asked: Mapping[str, Any] = {
         "program": program_version(),

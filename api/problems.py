@@ -34,6 +34,7 @@ _BY_CODE = {
     "unknown_account": HTTPStatus.NOT_FOUND,
     "unknown_key": HTTPStatus.NOT_FOUND,
     "table_changed": HTTPStatus.CONFLICT,
+    "stale_revision": HTTPStatus.CONFLICT,
     "bad_cursor": HTTPStatus.BAD_REQUEST,
 }
 _RETRYABLE = {

@@ -44,6 +44,8 @@ _LINKS = (
     "detections",
     "timeline",
     "defects",
+    "reviews",
+    "reviewed",
     "events",
     "logs",
     "artifacts",

@@ -91,8 +91,8 @@ class Defect(BaseModel):
         extra="allow", json_schema_extra={"example": {"id": 3, "label": "dent", "centroid": [0.12, -0.4, 2.31]}}
     )
 
-    id: int
-    label: str
+    id: int | None = Field(description="null only with `reviewed=1`, for what people added")
+    label: str | None
     centroid: list[float] | None = None
 
 

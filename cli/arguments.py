@@ -152,6 +152,19 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
     row.add_argument("--json", action="store_true", help="print row.json")
+    review = _add(commands, "review", "say what people say of the findings of a result; add records of a review.json")
+    review.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+    review.add_argument(
+        "--apply",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="records that the page saved or a service gave, added to review.json of RESULT; those known are left",
+    )
+    form = review.add_mutually_exclusive_group()
+    _json(form)
+    form.add_argument("--csv", action="store_true", help="print the findings as CSV, machine and people side by side")
     view = _add(commands, "view", "open a result in the browser: findings, surface, frames, timeline")
     view.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
     view.add_argument("--no-browser", dest="browser", action="store_false", help="only print the address")
@@ -231,5 +244,5 @@ def _fps(command: argparse.ArgumentParser) -> None:
     command.add_argument("--fps", type=float, metavar="N", help=text)
 
 
-def _json(command: argparse.ArgumentParser, text: str = "print JSON") -> None:
+def _json(command: argparse._ActionsContainer, text: str = "print JSON") -> None:
     command.add_argument("--json", action="store_true", help=text)

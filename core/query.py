@@ -6,7 +6,7 @@ They need the published folder alone: sparse model, surface, frames, defects (`d
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,8 @@ from core.timeline.seen import views_of_place
 
 F64 = NDArray[np.float64]
 
+GRID = 5
+"""Pixels across a drawn box, and down it, that are asked where it lies."""
 _SPACING_SAMPLE = 20_000
 TOLERANCE_SPACINGS = 5.0
 FAR_SHARE = 0.1
@@ -182,6 +184,30 @@ class Result:
             face=face,
             defect_id=self._defect_of(face),
         )
+
+    def place_of_box(self, frame_index: int, box: Sequence[float]) -> Shown:
+        """What a box that somebody drew on a frame shows: of a grid of its pixels the one at median distance.
+
+        Args:
+            frame_index: of the frame in the run.
+            box: x0, y0, x1, y1 in shares of the source frame.
+
+        Raises:
+            BadInput: the run has no such frame.
+        """
+        row = self._frames.get(frame_index)
+        if row is None:
+            raise BadInput(f"the run has no frame {frame_index}", where="frame")
+        width, height = self._crop.source_width, self._crop.source_height
+        steps = (np.arange(GRID) + 0.5) / GRID
+        pixels = [
+            ((box[0] + (box[2] - box[0]) * along) * width, (box[1] + (box[3] - box[1]) * down) * height)
+            for down in steps
+            for along in steps
+        ]
+        shown = [self.point_at(int(row["source_index"]), x, y, int(row["video"])) for x, y in pixels]
+        placed = sorted((one for one in shown if one.distance is not None), key=lambda one: one.distance or 0.0)
+        return placed[len(placed) // 2] if placed else shown[len(shown) // 2]
 
     def on_surface(self, place: F64) -> OnSurface:
         """The point of the surface nearest to a (3,) place; `BadInput` when there is none or it is far away."""

@@ -22,6 +22,8 @@ from store.keys import Keys
 from store.leasing import input_files, metadata_of
 from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Upload
 from store.plan import Plan
+from store.review_models import ReviewEntry
+from store.reviews import Reviews
 
 _PAGE = 500
 
@@ -59,7 +61,10 @@ class AccountData:
             return {
                 "account": plain(asdict(account)),
                 "keys": [plain(asdict(key)) for key in Keys(self.db).all(self.account_id)],
-                "inspections": [_inspection(row) for row in self._inspections()],
+                "inspections": [
+                    _inspection(row) | {"reviews": [one.to_dict() for one in Reviews(self.db).since(row.id)]}
+                    for row in self._inspections()
+                ],
                 "uploads": [_upload(row) for row in uploads],
                 "audit": [plain(asdict(entry)) for entry in self._audit()],
             }
@@ -101,6 +106,7 @@ class AccountData:
             owned = select(Inspection.id).where(Inspection.owner == self.account_id)
             session.execute(delete(MetadataEntry).where(MetadataEntry.inspection_id.in_(owned)))
             session.execute(delete(InspectionEvent).where(InspectionEvent.owner == self.account_id))
+            session.execute(delete(ReviewEntry).where(ReviewEntry.inspection_id.in_(owned)))
             said = update(Inspection).where(Inspection.owner == self.account_id)
             session.execute(said.values(label="", external_id="", parameters=None))
             if self.account_id != DEFAULT_ACCOUNT:

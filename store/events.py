@@ -39,6 +39,8 @@ class EventType(StrEnum):
     """It has come to another stage."""
     RENAMED = "inspection.renamed"
     """Its label, external id, priority or metadata changed."""
+    REVIEWED = "inspection.reviewed"
+    """Somebody said something of its findings."""
     DELETED = "inspection.deleted"
 
 

@@ -31,6 +31,7 @@ from store.models import (
     Worker,
 )
 from store.publishing import artifact_prefix
+from store.review_models import ReviewEntry
 from store.tables import clear_rows
 
 _IDEMPOTENCY_DAYS = 3
@@ -72,7 +73,7 @@ class Retention:
             inspection = lock_inspection(session, inspection_id)
             if inspection.deleted_at is None or inspection.state in ACTIVE_INSPECTION:
                 return
-            for table in (Task, Artifact):
+            for table in (Task, Artifact, ReviewEntry):
                 columns = table.__table__.columns
                 session.execute(delete(table).where(columns["inspection_id"] == inspection_id))
             clear_rows(session, inspection_id)

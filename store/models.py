@@ -19,6 +19,7 @@ from store.account_models import DEFAULT_ACCOUNT
 from store.columns import Base as Base
 from store.columns import Choice, with_columns_of
 from store.integration_models import MetadataEntry
+from store.review_models import ReviewEntry as ReviewEntry
 
 LEASABLE = (InspectionState.QUEUED, InspectionState.RUNNING)
 """States of an inspection whose tasks may start."""

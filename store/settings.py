@@ -21,6 +21,7 @@ from sqlalchemy.exc import ArgumentError
 
 from core.errors import BadInput
 from core.names import unknown_name
+from core.review.words import SEVERITIES
 from core.video.limits import MAX_FRAME_PIXELS
 
 PREFIX = "BLADEATLAS_"
@@ -166,6 +167,9 @@ class DeploymentSettings(BaseSettings):
     )
     max_probes_waiting_per_owner: int = Field(50, ge=0, description="the same of one owner; more get 429")
 
+    severities: str = Field(
+        ",".join(SEVERITIES), description="what a reviewer may say shall be done about a finding, separated by commas"
+    )
     trusted_hosts: str = Field(
         "",
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
@@ -242,6 +246,10 @@ class DeploymentSettings(BaseSettings):
     def host_names(self) -> frozenset[str]:
         """Names that the server goes by; empty = any."""
         return frozenset(name.strip().lower() for name in self.trusted_hosts.split(",") if name.strip())
+
+    def severity_names(self) -> tuple[str, ...]:
+        """What a reviewer may say shall be done about a finding, in this order."""
+        return tuple(dict.fromkeys(name.strip() for name in self.severities.split(",") if name.strip()))
 
     def worker_count(self) -> int:
         """Number of tasks side by side."""

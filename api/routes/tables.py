@@ -17,6 +17,7 @@ from api.negotiation import CSV_RESPONSE, Format, TableForm, matches, table, wan
 from api.paging import TABLE_RESPONSES, Asked, AskedFor, Source, paged
 from api.parameters import OneOf, Seconds, Share, Text
 from api.problems import Refused, not_found, responses
+from api.reviewed import ReviewedSource, WithReview, reviewed_form
 from api.state import state_of
 from core.scene.case import CaseKind, CaseStatus
 from core.scene.detection import Outcome
@@ -48,17 +49,23 @@ To = Annotated[Seconds | None, Query(description="seconds from the first frame: 
 
 
 def _answer(
-    request: Request, caller: Reader, inspection_id: str, what: Table, chosen: RowFilter, asked: Asked
+    request: Request,
+    caller: Reader,
+    inspection_id: str,
+    what: Table,
+    chosen: RowFilter,
+    asked: Asked,
+    reviewed: bool = False,
 ) -> Response:
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
-    source = Source(services.db, inspection_id, what, chosen)
     as_csv = wants_csv(request, asked.format)
-    if what is DEFECTS:
-        form = TableForm(DEFECT_COLUMNS, as_csv=as_csv, flat=flat_defect)
-    else:
-        form = TableForm(what.columns, as_csv=as_csv)
-    return paged(request, source, form, asked)
+    columns, flat = (DEFECT_COLUMNS, flat_defect) if what is DEFECTS else (what.columns, dict)
+    if reviewed:
+        source: Source = ReviewedSource(services.db, inspection_id, what, chosen)
+        return paged(request, source, reviewed_form(columns, flat, as_csv), asked)
+    source = Source(services.db, inspection_id, what, chosen)
+    return paged(request, source, TableForm(columns, as_csv=as_csv, flat=flat), asked)
 
 
 @router.get(
@@ -122,11 +129,12 @@ def detections(
     min_confidence: Confidence = None,
     from_s: From = None,
     to_s: To = None,
+    reviewed: WithReview = False,
 ) -> Response:
     """Rows of mapping/detections.csv, none dropped unless a filter says so."""
     equal = {"outcome": outcome, "video": video, "label": label, "blade": blade, "defect_id": defect_id}
     chosen = RowFilter(equal, min_confidence, from_s, to_s)
-    return _answer(request, caller, inspection_id, DETECTIONS, chosen, asked)
+    return _answer(request, caller, inspection_id, DETECTIONS, chosen, asked, reviewed)
 
 
 @router.get(
@@ -146,10 +154,11 @@ def timeline(
     min_confidence: Confidence = None,
     from_s: From = None,
     to_s: To = None,
+    reviewed: WithReview = False,
 ) -> Response:
     """Rows of mapping/timeline.csv, by start."""
     chosen = RowFilter({"video": video, "label": label, "defect_id": defect_id}, min_confidence, from_s, to_s)
-    return _answer(request, caller, inspection_id, TIMELINE, chosen, asked)
+    return _answer(request, caller, inspection_id, TIMELINE, chosen, asked, reviewed)
 
 
 @router.get(
@@ -166,6 +175,7 @@ def defects(
     label: Label = None,
     blade: Blade = None,
     min_confidence: Confidence = None,
+    reviewed: WithReview = False,
 ) -> Response:
     """Records of mapping/defects.json; as CSV their lists are counted.
 
@@ -173,7 +183,7 @@ def defects(
     `funnel.defects_at_least` to `funnel.defects` of quality.json.
     """
     chosen = RowFilter({"label": label, "blade": blade}, min_confidence)
-    return _answer(request, caller, inspection_id, DEFECTS, chosen, asked)
+    return _answer(request, caller, inspection_id, DEFECTS, chosen, asked, reviewed)
 
 
 @router.get(

@@ -38,6 +38,10 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("GET", f"{_ONE}/detections"): Scope.READ,
     ("GET", f"{_ONE}/timeline"): Scope.READ,
     ("GET", f"{_ONE}/defects"): Scope.READ,
+    ("GET", f"{_ONE}/reviews"): Scope.READ,
+    ("GET", f"{_ONE}/reviewed"): Scope.READ,
+    ("POST", f"{_ONE}/reviews"): Scope.REVIEW,
+    ("POST", f"{_ONE}/reviews/import"): Scope.REVIEW,
     ("GET", f"{_ONE}/artifacts"): Scope.READ,
     ("GET", f"{_ONE}/artifacts/{{path}}"): Scope.READ,
     ("HEAD", f"{_ONE}/artifacts/{{path}}"): Scope.READ,
@@ -84,6 +88,10 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/v1/inspections"): {"json": {"video_upload": "0" * 32}},
     ("PATCH", _ONE): {"json": {"label": "renamed"}},
     ("PATCH", f"{_ONE}/row"): {"json": {"count": 64}},
+    ("POST", f"{_ONE}/reviews"): {
+        "json": {"target": {"kind": "defect", "id": 3, "label": "dent"}, "action": "accept", "revision": 0}
+    },
+    ("POST", f"{_ONE}/reviews/import"): {"json": {"schema_version": 2, "records": []}},
     ("POST", "/v1/keys"): {"json": {"name": "another", "scopes": ["manage"]}},
     ("POST", "/v1/accounts"): {"json": {"id": "new"}},
     ("PATCH", "/v1/accounts/{account_id}"): {"json": {"name": "renamed"}},

@@ -1,13 +1,13 @@
 /** Everything by keyboard. The keys can be switched off, for people who speak to their computer. */
 
 import { signal } from "@preact/signals";
-import { asking, act, stepOpen, undo } from "./review";
-import { fromFrame, home, nearFinding, toggleMeasuring, view } from "./page/Surface3D";
+import { act, asking, draw, drawn, stepOpen, undo, type Asked } from "./review";
+import { fromFrame, home, keepLength, nearFinding, toggleMeasuring, view } from "./page/Surface3D";
 import { stepBoxes } from "./page/FrameView";
 import {
-  bestFrame, finding, frusta, go, helpOpen, overlay, place, play, playing, selectFinding, selectFrame, setLayer, stepFinding, stepFrame, stepSeeing,
+  bestFrame, drawing, finding, frusta, go, helpOpen, overlay, place, play, playing, selectFinding, selectFrame, setLayer, stepFinding, stepFrame, stepSeeing,
 } from "./state";
-import { surface } from "./session";
+import { size, surface } from "./session";
 
 interface Key {
   readonly keys: readonly string[];
@@ -16,7 +16,7 @@ interface Key {
   readonly run: () => void;
 }
 
-const ask = (what: "reject" | "relabel" | "note"): void => {
+const ask = (what: Asked): void => {
   if (finding.peek()) asking.value = what;
 };
 
@@ -30,6 +30,13 @@ export const KEYS: readonly Key[] = [
   { group: "Review", keys: ["r"], says: "reject, with a reason", run: () => ask("reject") },
   { group: "Review", keys: ["l"], says: "give another label", run: () => ask("relabel") },
   { group: "Review", keys: ["n"], says: "write a note", run: () => ask("note") },
+  { group: "Review", keys: ["s"], says: "severity: what shall be done", run: () => ask("severity") },
+  { group: "Review", keys: ["t"], says: "tell its blade", run: () => ask("set_blade") },
+  { group: "Review", keys: ["g"], says: "merge it into another finding", run: () => ask("merge") },
+  { group: "Review", keys: ["y"], says: "split detections off", run: () => { if ((finding.peek()?.detections.length ?? 0) > 1) ask("split"); } },
+  { group: "Review", keys: ["w"], says: "move it: arrows or a click in the frame, Enter keeps", run: () => draw("move") },
+  { group: "Review", keys: ["d"], says: "add a finding: draw it on the frame, Enter keeps", run: () => draw("add") },
+  { group: "Review", keys: ["u"], says: "keep the measured length", run: keepLength },
   { group: "Review", keys: ["z"], says: "take the last action back", run: undo },
   { group: "Frame", keys: ["."], says: "next frame of the video", run: () => stepFrame(1) },
   { group: "Frame", keys: [","], says: "previous frame of the video", run: () => stepFrame(-1) },
@@ -52,6 +59,24 @@ export const KEYS: readonly Key[] = [
   { group: "Surface", keys: ["-"], says: "farther", run: () => view.peek()?.orbit.zoom(1.18) },
   { group: "Page", keys: ["?"], says: "this list", run: () => { helpOpen.value = !helpOpen.peek(); } },
 ];
+
+/** Moves the box that is being drawn, or with Shift its far corner; Enter ends the drawing, Escape leaves it. */
+function drawByKey(event: KeyboardEvent): boolean {
+  const now = drawing.peek();
+  const by = ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] } as Record<string, readonly [number, number]>)[event.key];
+  if (event.key === "Enter") drawn();
+  else if (event.key === "Escape") drawing.value = null;
+  else if (!now || !by) return false;
+  else {
+    const [x, y] = by.map((one) => (one * size.width) / 100) as [number, number];
+    const [x0, y0, x1, y1] = now.box;
+    const keep = event.shiftKey;
+    const box = [x0 + (keep ? 0 : x), y0 + (keep ? 0 : y), x1 + x, y1 + y] as const;
+    if (box[2] - box[0] > 2 && box[3] - box[1] > 2) drawing.value = { ...now, box };
+  }
+  event.preventDefault();
+  return true;
+}
 
 const STORED = "bladeatlas keys off";
 export const keysOn = signal(stored());
@@ -80,6 +105,7 @@ export function listen(): void {
     const typing = target.matches("input:not([type=range],[type=checkbox]), select, textarea");
     const sliding = target.matches("input[type=range]") && event.key.startsWith("Arrow");
     if (typing || sliding || (helpOpen.peek() && event.key !== "?" && event.key !== "Escape")) return;
+    if (drawing.peek() && drawByKey(event)) return;
     if (event.key === "Escape") {
       if (helpOpen.peek()) return void (helpOpen.value = false);
       playing.value = false;

@@ -1,16 +1,21 @@
 /** One selection that list, surface, frame and timeline share, and its copy in the address. */
 
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import type { Vec3 } from "./model/data";
+import type { Finding, Vec3 } from "./model/data";
 import { formatHash, NOWHERE, parseHash, type Layer, type Place, type Tab } from "./model/hash";
 import { byRank, type SortKey } from "./model/sorting";
+import { findingName } from "./model/words";
 import type { Seeing, Shown } from "./scene/questions";
 import { data, detections, detectionsOfFrame, findings, frames, order, position, questions, surface, visitsOfFinding } from "./session";
 
 export const place = signal<Place>(NOWHERE);
 export const tab = computed(() => place.value.tab);
 export const layer = computed(() => place.value.layer);
-export const finding = computed(() => (place.value.d === null ? null : (findings.get(place.value.d) ?? null)));
+/** Findings that people made, by numbers below zero; filled by `review.ts`. */
+export const made = signal<ReadonlyMap<number, Finding>>(new Map());
+export const allFindings = computed<readonly Finding[]>(() => [...data.defects, ...made.value.values()]);
+export const findingOf = (id: number): Finding | undefined => findings.get(id) ?? made.value.get(id);
+export const finding = computed(() => (place.value.d === null ? null : (findingOf(place.value.d) ?? null)));
 export const frame = computed(() => (place.value.f === null ? null : (frames.get(place.value.f) ?? null)));
 export const detection = computed(() => (place.value.n === null ? null : (detections.get(place.value.n) ?? null)));
 export const blade = computed(() => place.value.b);
@@ -25,6 +30,8 @@ export const clip = signal(0);
 export const measuring = signal(false);
 export const measured = signal<readonly Vec3[]>([]);
 export const playing = signal(false);
+/** A box that is being drawn on the current frame, px: of a finding to be added, or around the new place of one. */
+export const drawing = signal<{ readonly what: "add" | "move"; readonly box: readonly [number, number, number, number] } | null>(null);
 export const helpOpen = signal(false);
 /** What the pixel clicked last shows. */
 export const asked = signal<{ readonly frame: number; readonly x: number; readonly y: number; readonly shown: Shown } | null>(null);
@@ -62,20 +69,20 @@ export function go(change: Change, quiet = false): void {
 }
 
 export function selectFinding(id: number | null, at: { frame?: number } = {}): void {
-  const one = id === null ? undefined : findings.get(id);
+  const one = id === null ? undefined : findingOf(id);
   batch(() => {
     asked.value = null;
     if (!one) return go({ d: null, n: null, p: null });
     const current = place.peek().f;
     const shown = at.frame ?? bestFrame(one.id) ?? current;
     go({ d: one.id, f: shown, n: null, p: null, cam: null });
-    announcement.value = `Finding D${one.id}, ${one.label}${shown === null ? "" : `, frame ${shown}`}`;
+    announcement.value = `Finding ${findingName(one.id)}, ${one.label}${shown === null ? "" : `, frame ${shown}`}`;
   });
 }
 
 /** The frame that shows a finding best: one with its box, if there is any. */
 export function bestFrame(id: number): number | null {
-  const one = findings.get(id);
+  const one = findingOf(id);
   if (!one) return null;
   const detected = one.frames.find((sighting) => sighting.detected)?.frame_index;
   const own = one.detections.map((k) => detections.get(k)?.frame).find((k) => k !== null && k !== undefined);
@@ -111,7 +118,7 @@ export function selectPoint(p: Vec3, on: number, at?: number): void {
     const shown = at ?? (known ? bestFrame(on) : list.some((one) => one.frame === current) ? current : (list[0]?.frame ?? current));
     asked.value = null;
     go({ p: [p[0], p[1], p[2]], d: known ? on : null, n: null, f: shown });
-    announcement.value = known ? `Finding D${on}` : "Point of the surface";
+    announcement.value = known ? `Finding ${findingName(on)}` : "Point of the surface";
   });
 }
 
@@ -161,13 +168,13 @@ export const reviewState = signal<ReadonlyMap<number, string>>(new Map());
 export const shownFindings = computed(() => {
   const { label, blade: on, confidence, review, words } = filters.value;
   const found = words.trim().toLowerCase();
-  const kept = data.defects.filter(
+  const kept = allFindings.value.filter(
     (one) =>
       (!label || one.label === label) &&
       (!on || String(one.blade ?? "") === on) &&
       (!confidence || (one.confidence?.value ?? 0) >= Number(confidence)) &&
       (!review || (reviewState.value.get(one.id) ?? "open") === review) &&
-      (!found || `d${one.id} ${one.label} ${one.blade ?? ""} ${one.side ?? ""}`.toLowerCase().includes(found)),
+      (!found || `${findingName(one.id).toLowerCase()} ${one.label} ${one.blade ?? ""} ${one.side ?? ""}`.toLowerCase().includes(found)),
   );
   return [...kept].sort(byRank(sort.value, descending.value, visitsOfFinding));
 });
@@ -223,6 +230,6 @@ export function playVisit(start_s: number, end_s: number, video: number): void {
 }
 
 effect(() => {
-  const name = finding.value ? `D${finding.value.id} ${finding.value.label} · ` : "";
+  const name = finding.value ? `${findingName(finding.value.id)} ${finding.value.label} · ` : "";
   untracked(() => (document.title = `${name}${data.title}`));
 });

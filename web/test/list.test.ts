@@ -1,7 +1,6 @@
 import { expect, test } from "vitest";
 import type { Finding } from "../src/model/data";
 import { marksOf } from "../src/model/marks";
-import { lastStanding, readRecords, reviewOf, type Action, type ReviewRecord } from "../src/model/review";
 import { visibleRow } from "../src/model/row";
 import { byRank } from "../src/model/sorting";
 import { certainty, confidenceReasons, measured } from "../src/model/words";
@@ -52,22 +51,6 @@ test("labels keep colour and shape, and differ", () => {
   expect(new Set([...marks.values()].map((mark) => mark.shape)).size).toBe(3);
   const many = marksOf(Array.from({ length: 20 }, (_, k) => `label ${String(k).padStart(2, "0")}`));
   expect(new Set([...many.values()].map((mark) => mark.css + mark.shape)).size).toBe(20);
-});
-
-test("an undo is a record, and takes back the last action that stands", () => {
-  const record = (revision: number, action: Action, value: string | number | null = null, id = 1): ReviewRecord => ({
-    revision, action, value, reason: action === "reject" ? "duplicate" : null, time: "", target: { kind: "defect", id, label: "dent", model: 0, centroid: [0, 0, 0] },
-  });
-  const records = [record(1, "accept"), record(2, "relabel", "nick"), record(3, "reject"), record(4, "note", "n", 2)];
-  expect(reviewOf(records, 1)).toEqual({ state: "rejected", reason: "duplicate", label: "nick", notes: [] });
-  expect(lastStanding(records)?.revision).toBe(4);
-  const undone = [...records, record(5, "undo", 4, 2), record(6, "undo", 3)];
-  expect(reviewOf(undone, 1).state).toBe("accepted");
-  expect(reviewOf(undone, 2).notes).toEqual([]);
-  expect(lastStanding(undone)?.revision).toBe(2);
-  expect(readRecords(JSON.stringify(records))).toEqual(records);
-  expect(readRecords("{")).toBeNull();
-  expect(readRecords("[1]")).toBeNull();
 });
 
 test("the tip is away from the axis when the root is inside, and nothing is drawn of an unknown row", () => {

@@ -7,7 +7,7 @@ export type Tab = (typeof TABS)[number];
 
 export interface Place {
   readonly tab: Tab;
-  /** Number of the finding. */
+  /** Number of the finding; of one that people made, below zero. */
   readonly d: number | null;
   /** Index of the frame. */
   readonly f: number | null;
@@ -29,7 +29,7 @@ export function parseHash(hash: string): Place {
   const words = new URLSearchParams(hash.replace(/^#/, ""));
   const whole = (name: string): number | null => {
     const text = words.get(name);
-    return text !== null && /^\d{1,9}$/.test(text) ? Number(text) : null;
+    return text !== null && (name === "d" ? /^-?\d{1,9}$/ : /^\d{1,9}$/).test(text) ? Number(text) : null;
   };
   const list = (name: string, count: number): number[] | null => {
     const values = (words.get(name) ?? "").split(",").map((text) => (text.trim() ? Number(text) : NaN));

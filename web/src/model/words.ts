@@ -2,6 +2,9 @@
 
 import type { Finding, ViewerData } from "./data";
 
+/** Name of a finding: of the method's by its number, of those that people made, whose numbers are below zero, in their order. */
+export const findingName = (id: number): string => (id < 0 ? `H${-id}` : `D${id}`);
+
 export function seconds(value: number): string {
   return `${value.toFixed(2)} s`;
 }

@@ -1,12 +1,11 @@
 /** What is known of the selected finding or detection, and the human's word on it. */
 
 import type { ComponentChildren, JSX } from "preact";
-import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Detection, Finding } from "../model/data";
-import { REASONS, reviewOf } from "../model/review";
-import { bladeText, certainty, confidenceReasons, measured, percent, reasonText, seconds } from "../model/words";
+import { bladeText, certainty, confidenceReasons, findingName, measured, percent, reasonText, seconds } from "../model/words";
 import { data, frames, surface, visitsOfFinding } from "../session";
-import { act, asking, counts, exportReview, kept, records, undo } from "../review";
+import { reviewOf } from "../review";
+import { Ask, Exports, ReviewBar, Said } from "./Reviewing";
 import { blade, detection, finding, go, place, playVisit, selectFrame } from "../state";
 import { LabelMark } from "./marks";
 
@@ -15,19 +14,21 @@ export function Detail(): JSX.Element {
   return (
     <section class="panel detail" aria-label="Selection">
       {one ? <OfFinding one={one} /> : own ? <OfDetection own={own} /> : <p class="note">Nothing is selected. Choose a finding, click the surface, or click a box of the frame.</p>}
-      {data.defects.length > 0 && <Exports />}
+      <Ask />
+      <Exports />
     </section>
   );
 }
 
 function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
-  const review = reviewOf(records.value, one.id);
+  const review = reviewOf(one.id);
   const unit = one.length_unit ?? one.size_unit ?? data.model.unit;
   const visits = visitsOfFinding.get(one.id) ?? [];
   return (
     <>
-      <h2><LabelMark label={one.label} /> D{one.id} <bdi>{one.label}</bdi>{review.label && <span class="human"> → <bdi>{review.label}</bdi></span>}</h2>
+      <h2><LabelMark label={one.label} /> {findingName(one.id)} <bdi>{one.label}</bdi>{review.label && <span class="human"> → <bdi>{review.label}</bdi></span>}</h2>
       <ReviewBar one={one} />
+      <Said review={review} />
       <dl>
         <Fact name="Size">{measured(one.size, one.size_sigma, unit)} <Unscaled unit={unit} /></Fact>
         {one.length !== undefined && <Fact name="Length × width">{measured(one.length, one.length_sigma, unit)} × {measured(one.width, one.width_sigma, unit)}</Fact>}
@@ -42,7 +43,7 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
         {one.span !== undefined && <Fact name="Span, chord">{share(one.span, one.span_sigma)}, {share(one.chord, one.chord_sigma)}</Fact>}
         {one.root_distance !== undefined && one.root_distance !== null && <Fact name="From the root">{measured(one.root_distance, one.root_distance_sigma, unit)}</Fact>}
         <Fact name="Persistence">detected in {one.persistence.k} of the {one.persistence.n} frames that could show it</Fact>
-        <Fact name="Place">{one.centroid.map((value) => value.toFixed(3)).join(", ")}{one.centroid_sigma ? ` ± ${one.centroid_sigma.toPrecision(2)}` : ""}</Fact>
+        <Fact name="Place">{one.centroid.every(Number.isFinite) ? one.centroid.map((value) => value.toFixed(3)).join(", ") : "none on the surface"}{one.centroid_sigma ? ` ± ${one.centroid_sigma.toPrecision(2)}` : ""}</Fact>
       </dl>
       <h3>Visits</h3>
       <ul class="chips">
@@ -58,7 +59,6 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
       </ul>
       <h3>Confidence {one.confidence ? `${percent(one.confidence.value)}, ${certainty(one.confidence.value)}` : "unknown"}</h3>
       <ul class="reasons">{confidenceReasons(one).map((text) => <li key={text}>{text}</li>)}</ul>
-      {review.notes.length > 0 && <><h3>Notes</h3><ul class="reasons">{review.notes.map((text, k) => <li key={k}><bdi>{text}</bdi></li>)}</ul></>}
     </>
   );
 }
@@ -90,52 +90,3 @@ function share(value: number | null | undefined, sigma: number | null | undefine
   return value === null || value === undefined ? "unknown" : `${percent(value)}${sigma ? ` ± ${Math.max(1, Math.round(100 * sigma))}` : ""}`;
 }
 
-function ReviewBar({ one }: { readonly one: Finding }): JSX.Element {
-  const state = reviewOf(records.value, one.id);
-  return (
-    <div class="review-bar" role="group" aria-label="Review">
-      <button type="button" aria-pressed={state.state === "accepted"} onClick={() => act("accept")} title="Accept (A)">Accept</button>
-      <button type="button" aria-pressed={state.state === "rejected"} onClick={() => (asking.value = "reject")} title="Reject (R)">Reject{state.state === "rejected" && state.reason ? `: ${state.reason}` : ""}</button>
-      <button type="button" onClick={() => (asking.value = "relabel")} title="Label (L)">Label</button>
-      <button type="button" onClick={() => (asking.value = "note")} title="Note (N)">Note</button>
-      <button type="button" disabled={!records.value.length} onClick={undo} title="Take back (Z)">Undo</button>
-      {asking.value && <Ask what={asking.value} label={one.label} />}
-    </div>
-  );
-}
-
-/** Asks for the word that an action needs; Enter keeps it, Escape leaves. */
-function Ask({ what, label }: { readonly what: "reject" | "relabel" | "note"; readonly label: string }): JSX.Element {
-  const field = useRef<HTMLInputElement & HTMLSelectElement>(null);
-  useLayoutEffect(() => field.current?.focus(), [what]); // before the next key is pressed
-  const done = (event: Event): void => {
-    event.preventDefault();
-    const value = field.current?.value.trim() ?? "";
-    if (what === "reject") act("reject", null, value);
-    else if (value) act(what, value);
-    asking.value = null;
-  };
-  const name = what === "reject" ? "Why is it rejected?" : what === "relabel" ? "The right label" : "Note";
-  return (
-    <form class="ask" onSubmit={done} onKeyDown={(event) => { if (event.key === "Escape") { event.stopPropagation(); asking.value = null; } else if (event.key === "Enter" && event.target === field.current) done(event); }}>
-      <label>{name}
-        {what === "reject"
-          ? <select ref={field}>{REASONS.map((reason) => <option key={reason}>{reason}</option>)}</select>
-          : <input ref={field} type="text" maxLength={what === "note" ? 2000 : 100} defaultValue={what === "relabel" ? label : ""} list={what === "relabel" ? "known-labels" : undefined as unknown as string} />}
-      </label>
-      {what === "relabel" && <datalist id="known-labels">{[...new Set(data.detections.map((own) => own.label))].map((own) => <option key={own} value={own} />)}</datalist>}
-      <button type="submit">Keep</button>
-      <button type="button" onClick={() => (asking.value = null)}>Leave</button>
-    </form>
-  );
-}
-
-function Exports(): JSX.Element {
-  return (
-    <p class="exports">
-      <span>Reviewed {counts.value.done} of {counts.value.all}.</span>
-      <button type="button" disabled={!records.value.length} onClick={exportReview}>Save review.json</button>
-      {!kept.value && <span class="warn">This browser keeps nothing for this page: save before you close it.</span>}
-    </p>
-  );
-}

@@ -3,12 +3,13 @@
 import { effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { measured, percent, reasonText, seconds } from "../model/words";
+import { findingName, measured, percent, reasonText, seconds } from "../model/words";
 import { Overlay } from "../scene/overlay";
 import { data, detections, detectionsOfFrame, frames, marks, questions, size, surface, surfaceReason } from "../session";
 import {
-  asked, askPixel, blade, boxes, detection, finding, frame, layer, overlay, place, seeing, selectFrame, stepFrame, stepSeeing, type Boxes,
+  asked, askPixel, blade, boxes, detection, drawing, finding, frame, layer, overlay, place, seeing, selectFrame, stepFrame, stepSeeing, type Boxes,
 } from "../state";
+import { drawn as endDrawing } from "../review";
 import { Tile } from "./marks";
 
 /** Width of the picture on the screen over that at which the part of it that was used fills the pane. */
@@ -81,7 +82,7 @@ export function FrameView(): JSX.Element {
         </div>
       </div>
       <div class={zoom.value > 1 ? "pane large" : "pane"} ref={pane} tabIndex={0} role="group" aria-label="Picture of the frame">
-        <div class="picture" style={{ width: `${width}px`, height: `${(width * size.height) / size.width}px` }} onClick={clickPicture}>
+        <div class="picture" style={{ width: `${width}px`, height: `${(width * size.height) / size.width}px` }} onClick={clickPicture} onPointerDown={press} onPointerMove={drag} onPointerUp={release}>
           {one?.picture ? (
             <img src={one.picture} alt={alternative()} draggable={false} />
           ) : (
@@ -122,9 +123,50 @@ function selectedPixel(): readonly [number, number] | null {
   return at ? questions.pixelOf(f, at) : null;
 }
 
-function clickPicture(event: MouseEvent): void {
+/** Pixel of the source picture under the pointer. */
+function pixelAt(event: MouseEvent): readonly [number, number] {
   const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
-  askPixel(((event.clientX - box.left) / box.width) * size.width, ((event.clientY - box.top) / box.height) * size.height);
+  return [((event.clientX - box.left) / box.width) * size.width, ((event.clientY - box.top) / box.height) * size.height];
+}
+
+let held: readonly [number, number] | null = null;
+/** The click that follows a drawing asks nothing. */
+let drew = false;
+
+function press(event: PointerEvent): void {
+  if (!drawing.peek() || event.button) return;
+  event.preventDefault();
+  (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
+  held = pixelAt(event);
+}
+
+function drag(event: PointerEvent): void {
+  const now = drawing.peek();
+  if (!now || !held) return;
+  const [x, y] = pixelAt(event);
+  const box = now.what === "move" ? ([x - 6, y - 6, x + 6, y + 6] as const) : ([Math.min(x, held[0]), Math.min(y, held[1]), Math.max(x, held[0]), Math.max(y, held[1])] as const);
+  if (box[2] - box[0] > 2 && box[3] - box[1] > 2) drawing.value = { ...now, box };
+}
+
+function release(event: PointerEvent): void {
+  if (!drawing.peek() || !held) return;
+  drag(event);
+  held = null;
+  drew = true;
+  endDrawing();
+}
+
+/** The box that is being drawn. */
+function Pending({ unit }: { readonly unit: number }): JSX.Element | null {
+  const now = drawing.value;
+  if (!now) return null;
+  const [x0, y0, x1, y1] = now.box;
+  return <><rect class="halo" x={x0} y={y0} width={x1 - x0} height={y1 - y0} fill="none" stroke="#000" stroke-width={4 * unit} /><rect class="pending" x={x0} y={y0} width={x1 - x0} height={y1 - y0} stroke-width={2 * unit} /></>;
+}
+
+function clickPicture(event: MouseEvent): void {
+  if (!drawing.peek() && !drew) askPixel(...pixelAt(event));
+  drew = false;
 }
 
 /** Boxes, masks, and the selected place, drawn by the page on the clean picture. */
@@ -152,10 +194,11 @@ function Drawn({ width }: { readonly width: number }): JSX.Element | null {
           <g key={own.id}>
             {shape({ fill: "none", stroke: "#000", "stroke-opacity": 0.6, "stroke-width": (strong ? 5 : 3.4) * unit }, "halo")}
             {shape({ ...style, "fill-opacity": 0.3, "stroke-width": (strong ? 3 : 1.6) * unit, "stroke-dasharray": dash }, strong ? "box strong" : "box")}
-            <text x={x0} y={Math.max(14 * unit, y0 - 5 * unit)} font-size={12.5 * unit} stroke-width={3 * unit} class="name">{own.defect !== null ? `D${own.defect} ` : ""}{own.label}</text>
+            <text x={x0} y={Math.max(14 * unit, y0 - 5 * unit)} font-size={12.5 * unit} stroke-width={3 * unit} class="name">{own.defect !== null ? `${findingName(own.defect)} ` : ""}{own.label}</text>
           </g>
         );
       })}
+      <Pending unit={unit} />
       {pixel && <path class="spot" d={cross(pixel[0], pixel[1], 9 * unit)} stroke-width={1.6 * unit} />}
       {click && click.shown.reason !== null && <path class="spot miss" d={`M${click.x - 7 * unit} ${click.y - 7 * unit}l${14 * unit} ${14 * unit}m0 ${-14 * unit}l${-14 * unit} ${14 * unit}`} stroke-width={2 * unit} />}
       <rect class="used" x={questions.crop[0]} y={questions.crop[1]} width={questions.crop[2] - questions.crop[0]} height={questions.crop[3] - questions.crop[1]} stroke-width={unit} stroke-dasharray={`${2 * unit} ${5 * unit}`} />
@@ -177,7 +220,7 @@ function Said(): JSX.Element {
   else if (click?.shown.reason === null) {
     const { distance, incidence_deg, finding: on, support } = click.shown;
     const unit = data.model.unit === "model" ? "" : ` ${data.model.unit}`;
-    text = `${on >= 0 ? `Finding D${on}` : "The surface"}: ${measured(distance, null, data.model.unit)}${unit ? "" : " model units"} from the camera, seen at ${Math.round(incidence_deg)}° from straight on, ${support >= 0.5 ? "well observed" : "weakly observed"}.`;
+    text = `${on >= 0 ? `Finding ${findingName(on)}` : "The surface"}: ${measured(distance, null, data.model.unit)}${unit ? "" : " model units"} from the camera, seen at ${Math.round(incidence_deg)}° from straight on, ${support >= 0.5 ? "well observed" : "weakly observed"}.`;
   } else if (click) text = `Nothing there: ${reasonText(data, click.shown.reason)}.`;
   else text = "Click the picture: its place on the surface is shown. Click the surface: the frames that see it are ranked here.";
   return <p class="said" role="status">{text}</p>;
@@ -187,7 +230,7 @@ function Said(): JSX.Element {
 function Ranked(): JSX.Element | null {
   const list = seeing.value;
   if (!list.length) return null;
-  const subject = place.value.p ? "this point" : `D${finding.value?.id ?? ""}`;
+  const subject = place.value.p ? "this point" : findingName(finding.value?.id ?? 0);
   const detected = new Set(finding.value?.detections.map((id) => detections.get(id)?.frame) ?? []);
   return (
     <div class="ranked" role="group" aria-label={`Frames that see ${subject}, best first`}>

@@ -4,10 +4,10 @@ import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { TABS, type Tab } from "../model/hash";
 import { SORTS, type SortKey } from "../model/sorting";
-import { bladeText, certainty, measured, percent, reasonText, seconds } from "../model/words";
+import { bladeText, certainty, findingName, measured, percent, reasonText, seconds } from "../model/words";
 import { data, detectionsOfFrame, order, visitsOfFinding } from "../session";
 import {
-  blade, descending, detection, filters, finding, frame, go, onlyUnplaced, place, reviewState, selectDetection, selectFinding,
+  allFindings, blade, descending, detection, filters, finding, frame, go, onlyUnplaced, place, reviewState, selectDetection, selectFinding,
   selectFrame, setTab, shownFindings, sort, tab,
 } from "../state";
 import { DetectionThumb, FindingThumb, LabelMark, Tile } from "./marks";
@@ -53,7 +53,7 @@ function useInSight(chosen: number | null): (element: HTMLElement | null) => voi
 function Findings(): JSX.Element {
   const list = shownFindings.value;
   const inSight = useInSight(place.value.d);
-  if (!data.defects.length) return <Nothing />;
+  if (!allFindings.value.length) return <Nothing />;
   return (
     <>
       <FindingFilters shown={list.length} />
@@ -67,7 +67,7 @@ function Findings(): JSX.Element {
               <button type="button" class="row" aria-current={chosen} ref={chosen ? inSight : null} onClick={() => selectFinding(one.id)}>
                 <FindingThumb finding={one} />
                 <span class="what">
-                  <span class="head"><LabelMark label={one.label} /> <b>D{one.id}</b> <bdi class="label">{one.label}</bdi>
+                  <span class="head"><LabelMark label={one.label} /> <b>{findingName(one.id)}</b> <bdi class="label">{one.label}</bdi>
                     {review && <span class={`review ${review}`}>{review}</span>}</span>
                   <span class="facts">
                     <span>{one.length !== null && one.length !== undefined ? "length" : "size"} {measured(one.length ?? one.size, one.length === null || one.length === undefined ? one.size_sigma : one.length_sigma, one.length_unit ?? one.size_unit ?? data.model.unit)}</span>
@@ -141,10 +141,10 @@ function FindingFilters({ shown }: { readonly shown: number }): JSX.Element {
       </label>
       <label>Review
         <select value={filters.value.review} onChange={set("review")}>
-          <option value="">any</option><option value="open">open</option><option value="accepted">accepted</option><option value="rejected">rejected</option>
+          <option value="">any</option><option value="open">open</option><option value="accepted">accepted</option><option value="rejected">rejected</option><option value="merged">merged</option>
         </select>
       </label>
-      <output aria-live="polite">{shown} of {data.defects.length}</output>
+      <output aria-live="polite">{shown} of {allFindings.value.length}</output>
     </div>
   );
 }

@@ -5,13 +5,14 @@ import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Vec3 } from "../model/data";
 import { LAYERS, type Layer } from "../model/hash";
-import { bladeText } from "../model/words";
+import { bladeText, findingName } from "../model/words";
 import { norm, sub } from "../model/pose";
 import { pathAlong } from "../scene/along";
 import { handle } from "../scene/orbit";
 import { View3D } from "../scene/view3d";
 import { data, marks, questions, surface, surfaceReason } from "../session";
 import { addressed, blade, clip, finding, frame, frusta, go, layer, measured, measuring, place, selectPoint, setLayer } from "../state";
+import { keepMeasured } from "../review";
 import { drawMarks } from "./marks3d";
 
 export const view = signal<View3D | null>(null);
@@ -185,7 +186,16 @@ function Measured(): JSX.Element | null {
   if (!measuring.value) return null;
   const [a, b] = measured.value;
   const text = !a ? "Click the first point." : !b ? "Click the second point." : distances(a, b);
-  return <p class="measured" role="status">{text}</p>;
+  return <p class="measured" role="status">{text}{a && b && finding.value && <> <button type="button" onClick={keepLength} title="Keep (U)">Keep for {findingName(finding.value.id)}</button></>}</p>;
+}
+
+/** Keeps the length that was measured: along the surface where there is a path. */
+export function keepLength(): void {
+  const [a, b] = measured.peek();
+  if (!a || !b || !finding.peek()) return;
+  const along = surface ? pathAlong(surface, a, b) : null;
+  const straight = norm(sub(a, b));
+  keepMeasured(along === null ? straight : Math.max(along, straight), along !== null, Math.SQRT2 * questions.spacing);
 }
 
 function distances(a: Vec3, b: Vec3): string {

@@ -4,7 +4,7 @@ import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Finding } from "../model/data";
-import { reasonText, seconds } from "../model/words";
+import { findingName, reasonText, seconds } from "../model/words";
 import { data, detections, detectionsOfFrame, frames, marks, order, position, videoStart, visitsOfFinding } from "../session";
 import { finding, frame, play, playing, selectDetection, selectFinding, selectFrame, shownFindings, stepFrame } from "../state";
 
@@ -102,12 +102,12 @@ const Tracks = differs(({ chosen, rows, wide }: { readonly chosen: number | null
         <g key={`d${one.id}`} class={chosen === one.id ? "track chosen" : "track"}>
           {chosen === one.id && <rect class="ground" x="0" y={y} width={wide} height={ROW} />}
           <path class="mark" transform={`translate(11 ${y + ROW / 2}) scale(5)`} d={mark?.shape ?? ""} fill={mark?.css ?? "gray"} />
-          <text class="lane" x="21" y={y + 13} data-finding={one.id}>{short(`D${one.id} ${one.label}`)}</text>
+          <text class="lane" x="21" y={y + 13} data-finding={one.id}>{short(`${findingName(one.id)} ${one.label}`)}</text>
           {(visitsOfFinding.get(one.id) ?? []).map((visit) => {
             const from = x(visit.video ?? 0, visit.start_s);
             return (
               <rect key={visit.event_id} class="visit" data-finding={one.id} data-time={visit.start_s} x={from - 2} y={y + 3} width={Math.max(5, x(visit.video ?? 0, visit.end_s) - from + 4)} height={ROW - 6} rx="3" style={{ fill: mark?.css ?? "gray" }}>
-                <title>{`D${one.id} from ${seconds(visit.start_s)} to ${seconds(visit.end_s)}: ${visit.n_detections} detections`}</title>
+                <title>{`${findingName(one.id)} from ${seconds(visit.start_s)} to ${seconds(visit.end_s)}: ${visit.n_detections} detections`}</title>
               </rect>
             );
           })}

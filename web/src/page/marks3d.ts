@@ -1,17 +1,19 @@
 /** Labels and lines over the 3D canvas, put where the view says; plain DOM, because it happens with every picture. */
 
 import type { Vec3 } from "../model/data";
+import { findingName } from "../model/words";
 import { visibleRow } from "../model/row";
 import type { View3D } from "../scene/view3d";
 import { data, marks } from "../session";
-import { finding, measured, place, selectFinding } from "../state";
+import { allFindings, finding, measured, place, selectFinding } from "../state";
 
 const buttons = new Map<number, HTMLButtonElement>();
 const SVG = "http://www.w3.org/2000/svg";
 
 /** @param hide whether to find out what the surface hides: rays are cast only when the view rests */
 export function drawMarks(view: View3D, labels: HTMLDivElement, lines: SVGSVGElement, hide: boolean): void {
-  for (const one of data.defects) {
+  for (const one of allFindings.peek()) {
+    if (!one.centroid.every(Number.isFinite)) continue;
     const button = buttons.get(one.id) ?? makeButton(one.id, one.label, labels);
     const at = view.screen(one.centroid, hide);
     // Until the view rests again, a label stays hidden or not as it was.
@@ -43,9 +45,9 @@ function makeButton(id: number, label: string, parent: HTMLElement): HTMLButtonE
   shape.setAttribute("fill", marks.get(label)?.css ?? "gray");
   mark.append(shape);
   const text = document.createElement("span");
-  text.textContent = `D${id}`;
+  text.textContent = findingName(id);
   button.append(mark, text);
-  button.title = `D${id} ${label}`;
+  button.title = `${findingName(id)} ${label}`;
   button.addEventListener("click", () => selectFinding(id));
   buttons.set(id, button);
   parent.append(button);

@@ -156,7 +156,7 @@ STAGES: dict[str, StageSpec] = {
             weight=0.5,
         ),
         _spec("gallery", "gallery", "mapping.method", version=6, reads_video=True, weight=1),
-        _spec("viewer", version=2, weight=2),
+        _spec("viewer", version=3, weight=2),
     )
 }
 

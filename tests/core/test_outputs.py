@@ -18,4 +18,5 @@ def test_nothing_that_says_where_defects_are_is_published_of_a_refused_model() -
             "mapping/confidence.json",
             "viewer/surface.glb",
             "viewer/frames",
+            "viewer/surface",
         }

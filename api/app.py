@@ -25,6 +25,7 @@ from api.routes import (
     keys,
     options,
     pages,
+    report,
     reviews,
     session,
     stages,
@@ -47,22 +48,8 @@ from store.settings import deployment_settings
 from store.web_sessions import WebSessions
 
 _ROUTERS = (
-    *(
-        health,
-        pages,
-        system,
-        options,
-        uploads,
-        inspections,
-        actions,
-        stages,
-        tables,
-        reviews,
-        artifacts,
-        viewer,
-        frames,
-    ),
-    *(artifacts, viewer, frames, session, keys, accounts, audit, events),
+    *(health, pages, system, options, uploads, inspections, actions, stages, tables, reviews),
+    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events),
 )
 
 

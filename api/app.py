@@ -25,6 +25,7 @@ from api.routes import (
     keys,
     options,
     pages,
+    report,
     reviews,
     row,
     session,
@@ -49,7 +50,7 @@ from store.web_sessions import WebSessions
 
 _ROUTERS = (
     *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, reviews),
-    *(artifacts, viewer, frames, session, keys, accounts, audit, events),
+    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events),
 )
 
 

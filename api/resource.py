@@ -198,5 +198,5 @@ def _queue(status: InspectionStatus, plan: Interval | None) -> Queue | None:
 
 def _links(inspection_id: str) -> dict[str, str]:
     own = f"/v1/inspections/{inspection_id}"
-    page = {"viewer": f"{own}/{VIEWER_PAGE}"}
+    page = {"viewer": f"{own}/{VIEWER_PAGE}", "report": f"{own}/report.pdf"}
     return {"self": own, **page, **{name.removesuffix(".zip"): f"{own}/{name}" for name in _LINKS}}

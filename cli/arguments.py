@@ -26,6 +26,7 @@ _SHARED = {
     "check": ("inputs", "check"),
     "point": ("query", "point"),
     "views": ("query", "views"),
+    "report": ("inspection_report", "command"),
 }
 """Module and function of commands that share a module; any other is `command` in the module of its name."""
 
@@ -177,10 +178,26 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="FILE",
         help="video of a result that keeps no pictures, of several each in their order: builds the page again",
     )
+    _report(commands)
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
         one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")
         _json(one)
+
+
+def _report(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    report = _add(commands, "report", "write the report of a result for people: PDF, HTML, CSV, JSON")
+    report.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
+    report.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder of the report, made when missing"
+    )
+    report.add_argument(
+        "--form", action="append", default=[], metavar="pdf|html|csv|json", help="only this form (repeatable)"
+    )
+    report.add_argument("--style", type=Path, metavar="DIR", help="folder of the house style (docs/report.md)")
+    report.add_argument("--reviewer", metavar="NAME", help="who signs (the person of the review, where it is one)")
+    report.add_argument("--date", metavar="YYYY-MM-DD", help="day of the report (that of the last word of the review)")
+    _json(report, "print the paths as JSON")
 
 
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

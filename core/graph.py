@@ -160,7 +160,7 @@ STAGES: dict[str, StageSpec] = {
             weight=0.5,
         ),
         _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
-        _spec("viewer", version=3, weight=2),
+        _spec("viewer", version=4, weight=2),
     )
 }
 

@@ -36,10 +36,14 @@ VIEWER = "viewer"
 """Folder of the page of a model, below it: what the stages left, and what is written when it is published."""
 VIEWER_PAGE = f"{VIEWER}/index.html"
 """The page to open."""
+DOCUMENT = "viewer.json"
+"""In that folder: what the page shows."""
 SURFACE_GLB = "surface.glb"
 """In that folder: the surface."""
 SPRITE = "sprite.jpg"
 """In that folder: thumbnails of all frames."""
+PORTRAITS = "surface"
+"""In that folder: pictures of the surface at each defect."""
 QUALITY = "quality.json"
 """Verdict, flags and counts."""
 SUMMARY = "summary.json"
@@ -66,6 +70,7 @@ _OF_A_VIEWER: tuple[Output, ...] = (
     Output(f"{VIEWER}/{SURFACE_GLB}", (("viewer", SURFACE_GLB),), needs_trust=True),
     # The best views at full size: they take the places of those that `pictures` made at half of it.
     Output(f"{VIEWER}/frames", (("viewer", "frames"),), folder=True, needs_trust=True),
+    Output(f"{VIEWER}/{PORTRAITS}", (("viewer", PORTRAITS),), folder=True, needs_trust=True),
 )
 
 OUTPUTS: tuple[Output, ...] = (
@@ -128,6 +133,11 @@ def is_of_page(path: str) -> bool:
 
 def evidence_name(defect: int) -> str:
     """File of a defect's picture in the gallery."""
+    return f"defect_{defect:03d}.jpg"
+
+
+def portrait_name(defect: int) -> str:
+    """File of the picture of the surface at a defect."""
     return f"defect_{defect:03d}.jpg"
 
 

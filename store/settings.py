@@ -109,6 +109,9 @@ class DeploymentSettings(BaseSettings):
         600.0, ge=0, description="files that belong to nothing are removed after so long, in seconds"
     )
     retention_days: float = Field(30.0, ge=0, description="an inspection is removed so long after it ended; 0 = never")
+    report_style: Path | None = Field(
+        None, description="folder of the house style of reports (docs/report.md); none = the plain one"
+    )
     upload_hours: float = Field(72.0, gt=0, description="an upload that nobody used is removed after this")
     reserve_bytes: int = Field(
         2 << 30, ge=0, description="free space below which new work is refused (507); what runs goes on"

@@ -1,4 +1,4 @@
-"""Stage `viewer`: the surface of one model as the page shows it, its poses, and the best views at full size."""
+"""Stage `viewer`: the surface of one model as the page shows it and in pictures, its poses, and its best views."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from core.viewer.scene import FRAMES, FULL, best_frames
 
 
 def run(task: StageTask) -> StageResult:
-    """Write `surface.glb`, `scene.json` and `frames/`. Facts: n_faces, glb_bytes."""
+    """Write `surface.glb`, `scene.json`, `frames/` and `surface/`. Facts: n_faces, glb_bytes."""
     views = views_of(read_model(task.input("extend")))
     mesh = with_blades(read_mesh(supported_mesh(task.input("mesh"))), read_mesh(defect_mesh(task.input("timeline"))))
     records = read_defects(task.input("timeline"))
     task.report(1, 5, "copying the best views")
     full = _keep_best(task, records)
     task.report(2, 5, "thinning out the surface")
-    scene = write_scene(task.out, mesh, views, read_crop(task.input("frames")), records, full)
+    scene = write_scene(task.out, mesh, views, read_crop(task.input("frames")), records, full, task.threads)
     task.report(5, 5, "surface of the page written")
     return StageResult({"n_faces": scene.surface.faces, "glb_bytes": (task.out / SURFACE_GLB).stat().st_size})
 

@@ -18,6 +18,7 @@ from core.scene.views import Views
 from core.surface.ply import Mesh
 from core.surface.support import point_spacing
 from core.viewer.parts import viewer_parts
+from core.viewer.portraits import write_portraits
 from core.viewer.quantized import write_quantized_glb
 from core.viewer.scene import SurfaceFacts, ViewerScene
 
@@ -32,8 +33,9 @@ def write_scene(
     crop: Crop,
     records: Sequence[DefectRecord],
     full: Sequence[int] = (),
+    threads: int = 1,
 ) -> ViewerScene:
-    """Write `surface.glb` and `scene.json`.
+    """Write `surface.glb`, a picture of the surface at each defect, and `scene.json`.
 
     Args:
         folder: existing.
@@ -42,14 +44,17 @@ def write_scene(
         crop: part of the source frames that was used.
         records: defects of the model; their faces are of `mesh`.
         full: frames whose pictures lie beside the surface, at the source's size.
+        threads: side by side.
     """
     turned = oriented(mesh, views)
     parts = viewer_parts(turned, {record.id: record.faces for record in records})
     write_quantized_glb(folder / SURFACE_GLB, parts)
+    portraits = write_portraits(folder, turned, views, records, threads)
     nodes = tuple(record.id for record in records if len(record.faces))
     faces = sum(len(part.faces) for part in parts.values())
     surface = SurfaceFacts(faces, len(mesh.faces), _spacing(mesh))
-    scene = ViewerScene(camera_of(views, crop), poses_of(views), up_of(views), surface, nodes, tuple(full))
+    camera, poses, up = camera_of(views, crop), poses_of(views), up_of(views)
+    scene = ViewerScene(camera, poses, up, surface, nodes, tuple(portraits), tuple(full))
     scene.write(folder)
     return scene
 

@@ -7,9 +7,9 @@ import json
 from importlib import resources
 from pathlib import Path
 
+from core.outputs import DOCUMENT
 from core.viewer.document import ViewerSource, viewer_document
 
-DOCUMENT = "viewer.json"
 DATA = "data.js"
 _BUNDLE = "bundle"
 

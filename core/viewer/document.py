@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from core.flags import Verdict
 from core.json_files import JsonObject
-from core.outputs import SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE
+from core.outputs import PORTRAITS, SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE, portrait_name
 from core.report.build import Report
 from core.report.record import Item
 from core.scene.defect import MODEL_UNIT, DefectRecord
@@ -226,10 +226,17 @@ def _defect(record: Item, scene: ViewerScene | None) -> JsonObject:
     return {
         **{name: value for name, value in record.items() if name != "faces"},
         "node": f"defect_{record['id']}" if scene is not None and record["id"] in scene.nodes else None,
+        "surface_picture": _portrait(record, scene),
         "best_frames": best_frames(DefectRecord.from_dict(dict(record))),
         "best": at,
         **_measured(record, extent),
     }
+
+
+def _portrait(record: Item, scene: ViewerScene | None) -> str | None:
+    """Address of the picture of the surface at a defect, relative to the page."""
+    drawn = scene is not None and record["id"] in scene.portraits
+    return f"{PORTRAITS}/{portrait_name(record['id'])}" if drawn else None
 
 
 def _measured(record: Item, extent: Item) -> JsonObject:

@@ -68,11 +68,11 @@ def write_pictures(
         height, width = rgb.shape[:2]
         name = image_name(index)
         if index in marked:
-            _write(folder / FRAMES / name, rgb)
+            write_jpeg(folder / FRAMES / name, rgb)
             scales[index] = 1
         else:
-            _write(folder / FULL / name, rgb)
-            _write(folder / FRAMES / name, _resized(rgb, (max(1, width // 2), max(1, height // 2))))
+            write_jpeg(folder / FULL / name, rgb)
+            write_jpeg(folder / FRAMES / name, _resized(rgb, (max(1, width // 2), max(1, height // 2))))
             scales[index] = HALF
         thumbnails[index] = _resized(rgb, (_TILE_WIDTH_PX, max(1, round(_TILE_WIDTH_PX * height / width))))
     if not thumbnails:
@@ -102,7 +102,7 @@ def _write_sprite(path: Path, thumbnails: Sequence[U8]) -> Sprite | None:
     for tile, thumbnail in enumerate(thumbnails):
         top, left = tile // _COLUMNS * height, tile % _COLUMNS * width
         sheet[top : top + height, left : left + width] = thumbnail
-    _write(path, sheet, _SPRITE_QUALITY)
+    write_jpeg(path, sheet, _SPRITE_QUALITY)
     return Sprite(width, height, _COLUMNS, len(thumbnails))
 
 
@@ -110,8 +110,12 @@ def _resized(rgb: U8, size: tuple[int, int]) -> U8:
     return np.asarray(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _write(path: Path, rgb: U8, quality: int = _QUALITY) -> None:
-    """Encoded in memory, because OpenCV's own file writing hides a full disk."""
+def write_jpeg(path: Path, rgb: U8, quality: int = _QUALITY) -> None:
+    """Write (h, w, 3) RGB as JPEG, encoded in memory, because OpenCV's own file writing hides a full disk.
+
+    Raises:
+        DiskFull: it could not be encoded.
+    """
     done, data = cv2.imencode(".jpg", np.ascontiguousarray(rgb[..., ::-1]), [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not done:
         raise DiskFull(f"{path.name} could not be encoded", where="pictures")

@@ -106,6 +106,8 @@ class ViewerScene:
     surface: SurfaceFacts
     nodes: tuple[int, ...]
     """Defects that have a node of their own."""
+    portraits: tuple[int, ...]
+    """Defects that have a picture of the surface."""
     full: tuple[int, ...]
     """Frames whose pictures lie beside this model's surface, at the source's size."""
 
@@ -123,6 +125,7 @@ class ViewerScene:
             up=row["up"],
             surface=SurfaceFacts(**row["surface"]),
             nodes=tuple(row["nodes"]),
+            portraits=tuple(row["portraits"]),
             full=tuple(row["full"]),
         )
 

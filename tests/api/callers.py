@@ -47,6 +47,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("HEAD", f"{_ONE}/artifacts/{{path}}"): Scope.READ,
     ("GET", f"{_ONE}/archive.zip"): Scope.READ,
     ("GET", f"{_ONE}/frames/{{index}}.jpg"): Scope.READ,
+    ("GET", f"{_ONE}/report.{{form}}"): Scope.READ,
     ("GET", f"{_ONE}/viewer/{{path}}"): Scope.READ,
     ("HEAD", f"{_ONE}/viewer/{{path}}"): Scope.READ,
     ("GET", f"{_ONE}/models/{{model}}/viewer/{{path}}"): Scope.READ,
@@ -129,6 +130,7 @@ class Place:
             "name": "draft",
             "path": _FILE,
             "index": "0",
+            "form": "json",
             "model": "1",
         }
 

@@ -20,4 +20,5 @@ def test_nothing_that_says_where_defects_are_is_published_of_a_refused_model() -
             "row.json",
             "row_map.svg",
             "viewer/frames",
+            "viewer/surface",
         }

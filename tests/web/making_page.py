@@ -35,7 +35,7 @@ HOSTILE = "<img src=x onerror=\"document.title='ran'\"><script>document.title='r
 
 def write_result(folder: Path) -> Path:
     """A result that `core.query` opens, with the page of its one model; gives the page."""
-    mesh = _mesh()
+    mesh = mesh_of_plates()
     (folder / "frames.csv").write_text(
         "\n".join(["index,source_index,time_s", *(f"{i},{10 * i},{0.5 * i}" for i in range(N_FRAMES))]) + "\n"
     )
@@ -45,7 +45,7 @@ def write_result(folder: Path) -> Path:
     write_mesh(folder / "mapping" / "mesh_defects.ply", mesh)
     page = folder / "viewer"
     page.mkdir()
-    records = _records(mesh)
+    records = records_of(mesh)
     scene = write_scene(page, mesh, plates.views(FRAMES), CROP, records)
     pictures = _pictures(page, mesh)
     rows = _rows()
@@ -70,7 +70,7 @@ def write_refused(folder: Path) -> Path:
     """The page of a run whose model was refused: pictures and detections, no place of anything."""
     page = folder / "viewer"
     page.mkdir()
-    pictures = _pictures(page, _mesh())
+    pictures = _pictures(page, mesh_of_plates())
     rows = [unplaced_row(plates.detection(0, NEAR_PLACE, 0), Reason.FRAME_NOT_REGISTERED, 0)]
     quality = {"verdict": "refused", "flags": [_flag("bent_model", "error")]}
     summary = {**_summary(), "state": "failed", "message": "every model was refused: bent_model"}
@@ -100,7 +100,7 @@ def _frames(registered: list[int]) -> list[dict[str, str | int | float | None]]:
     ]
 
 
-def _mesh() -> Mesh:
+def mesh_of_plates() -> Mesh:
     mesh = plates.plates()
     defect = np.full(len(mesh.vertices), -1, np.int32)
     for number, place in ((NEAR_FINDING, NEAR_PLACE), (FAR_FINDING, FAR_PLACE)):
@@ -113,7 +113,7 @@ def _mesh() -> Mesh:
     return Mesh(mesh.vertices, mesh.faces, colors, extra={"defect_id": defect, "support": support})
 
 
-def _records(mesh: Mesh) -> list[DefectRecord]:
+def records_of(mesh: Mesh) -> list[DefectRecord]:
     parts = {"views_visible": 4.0, "views_support": 2.0, "views_same_label": 1.0, "peers": 2.0, "cosine": 0.9}
 
     def record(number: int, label: str, place: tuple[float, float, float], value: float, size: float) -> DefectRecord:

@@ -1,0 +1,250 @@
+"""The report as one object (`report.json`): every other form of it shows this and nothing else.
+
+Texts come from the annotation file, the caller and the reviewer; they are data, and each form shows them as text.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import date
+
+from core.inspection_report.finding import UNKNOWN, added_objects, blade_text, finding_objects, unattached_texts
+from core.inspection_report.source import ReportSource
+from core.json_files import JsonObject
+from core.review.state import Review, Reviewed
+from core.scene.defect import MODEL_UNIT
+
+SCHEMA_VERSION = 1
+_DAY = len("YYYY-MM-DD")
+NO_ROW = "the row of blades was not looked for"
+
+
+def report_document(
+    source: ReportSource, reviewed: Reviewed | None = None, reviewer: str | None = None, day: str | None = None
+) -> JsonObject:
+    """The object of report.json.
+
+    Args:
+        source: of the result.
+        reviewed: what people say of it; None = nothing yet.
+        reviewer: who signs; by default whoever the review names, if that is one person.
+        day: of the report, ``YYYY-MM-DD``; by default that of the last word of the review.
+    """
+    summary, quality = source.summary, source.quality
+    reviews = {} if reviewed is None else {one.name: one.review for one in reviewed.findings}
+    findings = finding_objects(source, reviews)
+    coverage = [_coverage(model, source.rows.get(model), findings) for model in source.models]
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "title": str(summary.get("label") or summary.get("external_id") or "Inspection"),
+        "identity": _identity(summary),
+        "videos": _videos(summary),
+        "state": summary.get("state"),
+        "message": summary.get("message"),
+        "verdict": quality.get("verdict"),
+        "flags": [_flag(flag) for flag in quality.get("flags") or ()],
+        "notes": list(quality.get("notes") or ()),
+        "scale": _scale(summary),
+        "counts": _counts(findings, source),
+        "findings": findings,
+        "coverage": coverage,
+        "not_seen": _not_seen(coverage, quality),
+        "method": _method(summary),
+        "added": [] if reviewed is None else added_objects(reviewed),
+        "review": {
+            "reviewer": reviewer or _only_reviewer(reviews.values()),
+            "date": day or _last_day(reviews.values()),
+            "decided": sum(one["human"]["decided"] for one in findings),
+            "unattached": [] if reviewed is None else unattached_texts(reviewed),
+        },
+    }
+
+
+def _only_reviewer(reviews: Iterable[Review]) -> str | None:
+    names = {one.by for one in reviews if one.by}
+    return names.pop() if len(names) == 1 else None
+
+
+def _last_day(reviews: Iterable[Review]) -> str | None:
+    """Day of the last word, by the clock of whoever kept it; None without any or where a time is none."""
+    days = [one.time[:_DAY] for one in reviews if one.time]
+    return max((day for day in days if is_day(day)), default=None)
+
+
+def is_day(text: str) -> bool:
+    """Whether a text is a day, ``YYYY-MM-DD``."""
+    try:
+        return date.fromisoformat(text).isoformat() == text
+    except ValueError:
+        return False
+
+
+def _identity(summary: JsonObject) -> list[list[str]]:
+    """Names and texts by which the part and the inspection are known."""
+    rows: list[list[object]] = [["Label", summary.get("label")], ["External id", summary.get("external_id")]]
+    rows += [[str(name), value] for name, value in (summary.get("metadata") or {}).items()]
+    return [[str(name), str(value)] for name, value in rows if value not in (None, "")]
+
+
+def _videos(summary: JsonObject) -> list[JsonObject]:
+    """Each video with its hash and length, and the hash of its annotations."""
+    frame, inputs = summary.get("frame") or {}, summary.get("inputs") or {}
+    lengths = frame.get("videos") or [frame]
+    return [
+        {
+            "name": f"video {number}" if len(lengths) > 1 else "video",
+            "sha256": inputs.get(_role("video", number)),
+            "annotations_sha256": inputs.get(_role("annotations", number)),
+            "frames": one.get("n_frames"),
+            "duration_s": one.get("duration_s"),
+            "width": frame.get("width"),
+            "height": frame.get("height"),
+        }
+        for number, one in enumerate(lengths)
+    ]
+
+
+def _role(what: str, number: int) -> str:
+    return f"{what}_{number}" if number else what
+
+
+def _flag(flag: JsonObject) -> JsonObject:
+    return {
+        "code": flag["code"],
+        "severity": flag["severity"],
+        "text": flag.get("meaning") or flag["code"],
+        "where": flag.get("where") or "",
+        "value": flag.get("value"),
+        "threshold": flag.get("threshold"),
+    }
+
+
+def _scale(summary: JsonObject) -> JsonObject:
+    scale = summary.get("scale") or {}
+    unit = scale.get("unit") or MODEL_UNIT
+    if unit == MODEL_UNIT:
+        text = "No scale is known: sizes are unscaled, and may be compared with each other but not read as millimetres."
+    else:
+        sigma = scale.get("sigma")
+        spread = "" if sigma is None else f" ± {sigma:.2g}"
+        text = f"Scale: {scale['value']:.4g}{spread} {unit} in a unit of the model, from {scale.get('source')}."
+    return {"unit": unit, "text": text}
+
+
+def _counts(findings: Sequence[JsonObject], source: ReportSource) -> JsonObject:
+    """Findings by label and by blade, as a table."""
+    labels = sorted({one["label"] for one in findings})
+    blades = sorted({_blade(one) for one in findings}, key=_blade_order)
+    pairs = Counter((_blade(one), one["label"]) for one in findings)
+    least = source.summary.get("headline", {}).get("defects_at_least")
+    total = len(findings)
+    return {
+        "findings": total,
+        "at_least": total if least is None else least,
+        "detections": len(source.detections),
+        "labels": labels,
+        "rows": [
+            {
+                "blade": blade,
+                "by_label": [pairs[blade, label] for label in labels],
+                "findings": sum(pairs[blade, label] for label in labels),
+            }
+            for blade in blades
+        ],
+    }
+
+
+def _blade(finding: JsonObject) -> str:
+    place = finding["place"]
+    return blade_text(place["blade"], relative=place["relative"])
+
+
+def _blade_order(blade: str) -> tuple[bool, int, str]:
+    """By number; those that are not known, or whose model has its own count, come last."""
+    number = blade.removeprefix("blade ").split(" ")[0]
+    return not number.isdecimal(), int(number) if number.isdecimal() else 0, blade
+
+
+def _coverage(model: int, row: JsonObject | None, findings: Sequence[JsonObject]) -> JsonObject:
+    """What was seen of each blade of a model."""
+    own = [one for one in findings if one["model"] == model]
+    status = (row or {}).get("status") or UNKNOWN
+    known = status != UNKNOWN
+    reason = None if known else (row or {}).get("reason_text") or NO_ROW
+    blades = [_blade_seen(one, model, own, row or {}) for one in (row or {}).get("coverage") or ()] if known else []
+    return {"model": model, "status": status, "reason": reason, "count": (row or {}).get("count"), "blades": blades}
+
+
+def _blade_seen(one: Mapping[str, object], model: int, findings: Sequence[JsonObject], row: JsonObject) -> JsonObject:
+    name = f"{model}-B{one['blade']}" if model else str(one["blade"])
+    return {
+        "blade": name,
+        "text": blade_text(name, relative=row.get("zero_blade") is None),
+        "findings": sum(str(finding["place"]["blade"]) == name for finding in findings),
+        "share": one.get("share"),
+        "views_2": one.get("views_2"),
+        "views_3": one.get("views_3"),
+    }
+
+
+def _not_seen(coverage: Sequence[JsonObject], quality: JsonObject) -> list[str]:
+    """What this inspection cannot say anything about, in sentences."""
+    said = [
+        "A place without a finding was either seen and nothing was detected, or not seen: this list tells the second."
+    ]
+    for one in coverage:
+        which = f"Model {one['model']}: " if len(coverage) > 1 else ""
+        if one["status"] == UNKNOWN:
+            said.append(
+                f"{which}The row of blades is unknown ({one['reason']}), so what was not seen of each blade cannot be "
+                "told."
+            )
+        if one["blades"]:
+            unseen = [f"{100 * (1 - blade['views_2']):.0f} % of {blade['text']}" for blade in one["blades"]]
+            said.append(
+                f"{which}Of the reconstructed surface no two views see at a usable angle: {', '.join(unseen)}. What no "
+                "view saw has no surface, and is not even counted in these shares."
+            )
+        if one["count"] and one["blades"]:
+            low, high = one["count"]
+            row = str(low) if low == high else f"{low} to {high}"
+            said.append(f"{which}{len(one['blades'])} of {row} blades of the row appear; the others were not seen.")
+    registration = quality.get("registration") or {}
+    frames, registered = registration.get("frames"), registration.get("registered")
+    if frames is not None and registered is not None and registered < frames:
+        said.append(
+            f"{frames - registered} of {frames} frames used have no place in the model; what only they show is not on "
+            "the surface."
+        )
+    for lost in quality.get("lost") or ():
+        said.append(f"{lost['detections']} detections have no place: {lost['meaning']}.")
+    return said
+
+
+def _method(summary: JsonObject) -> JsonObject:
+    parameters = summary.get("parameters") or {}
+    return {
+        "fingerprint": summary.get("fingerprint"),
+        "preset": summary.get("preset"),
+        "versions": {str(name): str(value) for name, value in (summary.get("versions") or {}).items()},
+        "changed": [str(name) for name in parameters.get("overrides") or ()],
+        "parameters": [
+            [name, _value(value)] for name, value in _flat(parameters, "") if not name.startswith("overrides")
+        ],
+    }
+
+
+def _flat(value: object, name: str) -> list[tuple[str, object]]:
+    """Single values of nested objects by dotted name."""
+    if not isinstance(value, Mapping):
+        return [(name, value)]
+    return [pair for key, inner in value.items() for pair in _flat(inner, f"{name}.{key}" if name else str(key))]
+
+
+def _value(value: object) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, list | tuple):
+        return ", ".join(_value(one) for one in value) or "none"
+    return f"{value:g}" if isinstance(value, float) else str(value)

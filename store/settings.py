@@ -137,6 +137,14 @@ class DeploymentSettings(BaseSettings):
     )
     max_probes_waiting_per_owner: int = Field(50, ge=0, description="the same of one owner; more get 429")
 
+    max_connections: int = Field(
+        2000,
+        ge=1,
+        description="open connections of one server, at most; beyond it those give way that have sent no whole request",
+    )
+    header_seconds: float = Field(
+        15.0, gt=0, description="a connection that has sent no whole request header by then is closed, in seconds"
+    )
     trusted_hosts: str = Field(
         "",
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "

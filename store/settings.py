@@ -6,10 +6,11 @@ A variable of this prefix that nothing reads is an error, not a wish that is ign
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 from sqlalchemy import URL
 
@@ -18,6 +19,7 @@ from core.names import unknown_name
 from core.video.limits import MAX_FRAME_PIXELS
 
 PREFIX = "BLADEATLAS_"
+_ORIGIN = re.compile(r"https?://[a-z0-9.-]+(:\d{1,5})?|https?://\[[0-9a-f:.]+\](:\d{1,5})?")
 _OF_CLIENTS = ("SERVER", "API_KEY")
 """What the commands read that talk to a server; see `cli.remote`."""
 _OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
@@ -150,6 +152,11 @@ class DeploymentSettings(BaseSettings):
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
         "421; empty = any",
     )
+    cors_origins: str = Field(
+        "",
+        description="with API keys: origins whose pages may call this server, e.g. https://front.example.com, "
+        "separated by commas; empty = none",
+    )
     graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
 
     def folder(self, name: str) -> Path:
@@ -167,6 +174,18 @@ class DeploymentSettings(BaseSettings):
     def host_names(self) -> frozenset[str]:
         """Names that the server goes by; empty = any."""
         return frozenset(name.strip().lower() for name in self.trusted_hosts.split(",") if name.strip())
+
+    def origins(self) -> list[str]:
+        """Origins of foreign pages that may call."""
+        return [origin.strip() for origin in self.cors_origins.split(",") if origin.strip()]
+
+    @field_validator("cors_origins")
+    @classmethod
+    def _are_origins(cls, value: str) -> str:
+        for origin in filter(None, (part.strip() for part in value.split(","))):
+            if not _ORIGIN.fullmatch(origin):
+                raise ValueError("an origin is https://name or https://name:port, without a path and in small letters")
+        return value
 
     def worker_count(self) -> int:
         """Number of tasks side by side."""

@@ -7,7 +7,7 @@ import sys
 from fastapi import Depends, FastAPI
 from prometheus_client import CollectorRegistry
 
-from api import openapi, problems
+from api import openapi, problems, transport
 from api.auditing import Auditor
 from api.events import EventFeed
 from api.middleware import RequestMetrics, RequestMiddleware, known_query
@@ -23,6 +23,7 @@ from api.routes import (
     health,
     inspections,
     keys,
+    links,
     options,
     pages,
     report,
@@ -50,7 +51,7 @@ from store.web_sessions import WebSessions
 
 _ROUTERS = (
     *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, reviews),
-    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events),
+    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events, links),
 )
 
 
@@ -79,7 +80,9 @@ def create_app(services: Services | None = None) -> FastAPI:
     problems.install(app)
     openapi.install(app)
     # The last one added is the first that sees a request: refusals are named and counted too.
-    app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=state.services.settings.host_names())
+    settings = state.services.settings
+    app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=settings.host_names())
+    transport.install(app, settings.origins())
     app.add_middleware(
         RequestMiddleware, metrics=RequestMetrics(state.registry), auditor=Auditor(AuditLog(state.services.db))
     )

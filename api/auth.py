@@ -6,12 +6,13 @@ in requests of the server's own pages, and for changes only beside a header that
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import Depends, Request
+from fastapi import Depends, Query, Request
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 from starlette.concurrency import run_in_threadpool
 
@@ -20,6 +21,7 @@ from api.state import State, state_of
 from api.trust import is_loopback_address, is_own_site
 from store.account_models import DEFAULT_ACCOUNT, Scope
 from store.keys import KeyView, utc_now
+from store.links import Links, Signature
 
 BEARER = HTTPBearer(
     auto_error=False, description="API key from `bladeatlas keys create`. Without any key the server serves loopback."
@@ -28,6 +30,7 @@ COOKIE = "bladeatlas_session"
 WRITE_HEADER = "X-BladeAtlas-Write"
 """Any value of it will do: a page of another origin cannot send it without being allowed to."""
 READS = ("GET", "HEAD", "OPTIONS")
+_LINKED = re.compile(r"/v1/inspections/([0-9a-f]{32})/(.+)\Z", re.DOTALL)
 _CHALLENGE = {"WWW-Authenticate": "Bearer"}
 
 
@@ -89,6 +92,30 @@ async def _identified(request: Request, state: State, credentials: HTTPAuthoriza
     return Caller(key.account_id, key.id, frozenset(key.scopes))
 
 
+async def reader_or_link(
+    request: Request,
+    credentials: Annotated[HTTPAuthorizationCredentials | None, Depends(BEARER)],
+    expires: Annotated[int | None, Query(ge=0, le=1 << 40, description="of a signed link")] = None,
+    signature: Annotated[str | None, Query(max_length=64, description="of a signed link")] = None,
+) -> Caller:
+    """The caller with the scope `read`, or the account whose link this is; 403 for a link that is not good."""
+    if signature is None and expires is None:
+        found = await caller(request, credentials)
+        found.require(Scope.READ)
+        return found
+    state, linked = state_of(request), _LINKED.search(request.scope["path"])
+    owner = None
+    if linked is not None and signature is not None and expires is not None and signature.isascii():
+        links, given = Links(state.services.db), Signature(expires, signature)
+        owner = await run_in_threadpool(links.owner, linked[1], linked[2], given)
+    if owner is None:
+        detail = "this link is not good, or its time is over, or its account ended its links"
+        raise Refused(HTTPStatus.FORBIDDEN, "bad_link", detail, where="signature")
+    if not state.rate.spend(owner):
+        await run_in_threadpool(state.rate.spend_slowly, owner)
+    return Caller(owner, "", frozenset({Scope.READ}))
+
+
 def _require_own_will(request: Request) -> None:
     """403 for a request with a cookie that a foreign page may have made a browser send."""
     if not is_own_site(request):
@@ -129,6 +156,8 @@ def requires(scope: Scope) -> Callable[[Caller], Caller]:
 
 Reader = Annotated[Caller, Depends(requires(Scope.READ))]
 """Parameter of a route that shows what the caller's account has, or what concerns everybody."""
+LinkReader = Annotated[Caller, Depends(reader_or_link)]
+"""Parameter of a route that also signed links open."""
 Submitter = Annotated[Caller, Depends(requires(Scope.SUBMIT))]
 """Parameter of a route that sends, starts, stops or deletes something of the caller's account."""
 Reviewer = Annotated[Caller, Depends(requires(Scope.REVIEW))]

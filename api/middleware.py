@@ -16,7 +16,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.auditing import Auditor
-from api.auth import BEARER, caller
+from api.auth import BEARER, caller, reader_or_link
 from api.parameters import METADATA
 from api.problems import FieldError, Refused, pointer
 from core.metadata import is_metadata_name
@@ -142,7 +142,7 @@ def _declared(route: APIRoute) -> tuple[tuple[str, ...], bool]:
     """Names of the route's query parameters, and whether it asks who calls."""
     dependants = list(_flat(route.dependant))
     names = tuple(dict.fromkeys(field.alias for one in dependants for field in one.query_params))
-    return names, any(one.call is caller for one in dependants)
+    return names, any(one.call in (caller, reader_or_link) for one in dependants)
 
 
 def _flat(dependant: Dependant) -> Iterator[Dependant]:

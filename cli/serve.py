@@ -14,6 +14,7 @@ from fastapi import FastAPI
 from filelock import FileLock, Timeout
 
 from api.app import create_app
+from api.connections import config_of
 from api.services import make_services
 from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
@@ -50,7 +51,8 @@ def command(parsed: argparse.Namespace) -> int:
             graph = load_graph(settings.graph)
             with ExitStack() as running:
                 wake = _background(running, settings, database, graph, identity, parsed.workers)
-                _listen(_application(settings, database, graph, wake), parsed.host, parsed.port)
+                application = _application(settings, database, graph, wake)
+                _listen(application, settings, parsed.host, parsed.port)
         finally:
             database.close()
     return 0
@@ -139,9 +141,10 @@ def _run(running: ExitStack, part: Periodic | WorkerService | PollingRunners) ->
     running.callback(part.stop)
 
 
-def _listen(application: FastAPI, host: str, port: int) -> None:
-    config = uvicorn.Config(
+def _listen(application: FastAPI, settings: DeploymentSettings, host: str, port: int) -> None:
+    config = config_of(
         application,
+        settings,
         host=host,
         port=port,
         log_config=None,

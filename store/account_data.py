@@ -111,6 +111,7 @@ class AccountData:
             session.execute(said.values(label="", external_id="", parameters=None))
             if self.account_id != DEFAULT_ACCOUNT:
                 account = session.get_one(Account, self.account_id)
+                account.link_secret = None
                 account.closed_at, account.name = account.closed_at or self.db.now(session), account.id
         return had
 

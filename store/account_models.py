@@ -55,6 +55,8 @@ class Account(Base):
     max_promised_bytes: Mapped[int | None] = mapped_column(BigInteger)
     max_kept_bytes: Mapped[int | None] = mapped_column(BigInteger)
     max_requests_per_minute: Mapped[int | None]
+    link_secret: Mapped[str | None] = mapped_column(String(64))
+    """What its signed links are made with, 256 random bits; None before the first, and after all were ended."""
     turn_at: Mapped[datetime | None]
     """When a task of the account was leased last; see `store.turns`."""
 

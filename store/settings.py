@@ -25,6 +25,7 @@ from core.review.words import SEVERITIES
 from core.video.limits import MAX_FRAME_PIXELS
 
 PREFIX = "BLADEATLAS_"
+_ORIGIN = re.compile(r"https?://[a-z0-9.-]+(:\d{1,5})?|https?://\[[0-9a-f:.]+\](:\d{1,5})?")
 _OF_CLIENTS = ("SERVER", "API_KEY")
 """What the commands read that talk to a server; see `cli.remote`."""
 _OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
@@ -173,10 +174,23 @@ class DeploymentSettings(BaseSettings):
     severities: str = Field(
         ",".join(SEVERITIES), description="what a reviewer may say shall be done about a finding, separated by commas"
     )
+    max_connections: int = Field(
+        2000,
+        ge=1,
+        description="open connections of one server, at most; beyond it those give way that have sent no whole request",
+    )
+    header_seconds: float = Field(
+        15.0, gt=0, description="a connection that has sent no whole request header by then is closed, in seconds"
+    )
     trusted_hosts: str = Field(
         "",
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
         "421; empty = any",
+    )
+    cors_origins: str = Field(
+        "",
+        description="with API keys: origins whose pages may call this server, e.g. https://front.example.com, "
+        "separated by commas; empty = none",
     )
     graph: str = Field("store.graph:CORE_GRAPH", description="stage graph as module:name; another one in trials")
 
@@ -253,6 +267,18 @@ class DeploymentSettings(BaseSettings):
     def severity_names(self) -> tuple[str, ...]:
         """What a reviewer may say shall be done about a finding, in this order."""
         return tuple(dict.fromkeys(name.strip() for name in self.severities.split(",") if name.strip()))
+
+    def origins(self) -> list[str]:
+        """Origins of foreign pages that may call."""
+        return [origin.strip() for origin in self.cors_origins.split(",") if origin.strip()]
+
+    @field_validator("cors_origins")
+    @classmethod
+    def _are_origins(cls, value: str) -> str:
+        for origin in filter(None, (part.strip() for part in value.split(","))):
+            if not _ORIGIN.fullmatch(origin):
+                raise ValueError("an origin is https://name or https://name:port, without a path and in small letters")
+        return value
 
     def worker_count(self) -> int:
         """Number of tasks side by side."""

@@ -23,7 +23,7 @@ SERVICES = {
     "redis": ("BLADEATLAS_TEST_REDIS_URL", "redis://127.0.0.1:6379/15"),
     "rabbitmq": ("BLADEATLAS_TEST_RABBITMQ_URL", "amqp://guest:guest@127.0.0.1:5672//"),
 }
-TOOLS = {"ffmpeg": ("ffmpeg", "ffprobe"), "chromium-headless-shell": ("chromium-headless-shell",)}
+TOOLS = {"ffmpeg": ("ffmpeg", "ffprobe"), "chromium-headless-shell": ("chromium-headless-shell",), "nginx": ("nginx",)}
 """Programs that a tool consists of; all of them must be there."""
 _SKIPPED = pytest.StashKey[Counter[str]]()
 

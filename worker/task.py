@@ -140,7 +140,7 @@ class TaskProcess:
 
     def _listen(self, on_progress: Callable[[float, str], None], wait_s: float = _POLL_S) -> bool:
         """Take in what was written; False at the end of the stream."""
-        if not select.select([self._read], [], [], wait_s)[0]:
+        if not self._readable(wait_s):
             return True
         data = os.read(self._read, 1 << 16)
         *lines, self._buffer = (self._buffer + data).split(b"\n")
@@ -155,8 +155,14 @@ class TaskProcess:
         return bool(data)
 
     def _drain(self, on_progress: Callable[[float, str], None]) -> None:
-        while select.select([self._read], [], [], 0)[0] and self._listen(on_progress, 0):
+        while self._readable(0) and self._listen(on_progress, 0):
             pass
+
+    def _readable(self, wait_s: float) -> bool:
+        """Whether something was written, or the stream is over; `select` would take no descriptor above 1023."""
+        poll = select.poll()
+        poll.register(self._read, select.POLLIN)
+        return bool(poll.poll(wait_s * 1000))
 
     def _terminate(self) -> None:
         self._signal(signal.SIGTERM)

@@ -114,7 +114,7 @@ def create(request: Request, caller: Administrator, body: NewAccount) -> Account
 @router.get("/{account_id}", summary="Look at an account", responses=responses(401, 404, 503))
 def look(request: Request, caller: AnyCaller, account_id: str) -> AccountItem:
     """The caller's own with the scope `read`, any with `admin`."""
-    _require(caller, account_id, Scope.READ)
+    require_of_account(caller, account_id, Scope.READ)
     return _item(_accounts(request).get(account_id))
 
 
@@ -136,7 +136,7 @@ def delete(request: Request, caller: AnyCaller, account_id: str) -> Response:
 
     The caller's own account with the scope `manage`, any with `admin`. The account `default` stays open.
     """
-    _require(caller, account_id, Scope.MANAGE)
+    require_of_account(caller, account_id, Scope.MANAGE)
     state = state_of(request)
     for inspection_id in AccountData(state.services.db, account_id).delete(state.services.plan):
         state.watcher.invalidate(inspection_id)
@@ -145,7 +145,7 @@ def delete(request: Request, caller: AnyCaller, account_id: str) -> Response:
     return Response(status_code=HTTPStatus.NO_CONTENT)
 
 
-def _require(caller: Caller, account_id: str, scope: Scope) -> None:
+def require_of_account(caller: Caller, account_id: str, scope: Scope) -> None:
     """404 for somebody else's account, as if there were none; 403 without the scope for the own one."""
     if Scope.ADMIN in caller.scopes:
         return

@@ -16,7 +16,7 @@ from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from zipstream import ZipStream
 
-from api.auth import Reader
+from api.auth import LinkReader, Reader
 from api.finding import find_inspection
 from api.negotiation import Span, matches, wanted_span
 from api.problems import not_found, responses
@@ -95,7 +95,7 @@ def _item(inspection_id: str, view: ArtifactView) -> ArtifactItem:
 @router.head("/artifacts/{path:path}", summary="Size and hash of a file", include_in_schema=False)
 def fetch(
     request: Request,
-    caller: Reader,
+    caller: LinkReader,
     inspection_id: str,
     path: str,
     range: Annotated[str | None, Header(description="one range of bytes", examples=["bytes=1048576-"])] = None,

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from PIL import Image, ImageDraw
 
-from api.auth import Reader
+from api.auth import LinkReader
 from api.finding import find_inspection
 from api.problems import not_found, responses
 from api.services import Services
@@ -36,7 +36,7 @@ _JPEG_QUALITY = 90
 )
 def frame(
     request: Request,
-    caller: Reader,
+    caller: LinkReader,
     inspection_id: str,
     index: str,
     boxes: Annotated[bool, Query(description="draw the detections on it: solid = mapped")] = False,

@@ -54,7 +54,10 @@ def _size(part: Path) -> int:
 
 def _fetch(http: httpx.Client, url: str, artifact: ArtifactInfo, part: Path, on_bytes: OnBytes) -> None:
     done = _size(part)
-    headers = {"Range": f"bytes={done}-", "If-Range": f'"{artifact.sha256}"'} if done else {}
+    # As it is: its length is known then, and a part that came belongs to what a later request goes on with.
+    headers = {"Accept-Encoding": "identity"}
+    if done:
+        headers |= {"Range": f"bytes={done}-", "If-Range": f'"{artifact.sha256}"'}
     with http.stream("GET", url, headers=headers) as response:
         if response.status_code >= 400:
             response.read()

@@ -61,6 +61,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("POST", f"{_ONE}/retry"): Scope.SUBMIT,
     ("PATCH", f"{_ONE}/row"): Scope.SUBMIT,
     ("POST", f"{_ONE}/cancel"): Scope.SUBMIT,
+    ("POST", f"{_ONE}/links"): Scope.READ,
     ("GET", "/v1/session"): ANY,
     ("POST", "/v1/session"): ANY,
     ("GET", "/v1/keys"): Scope.MANAGE,
@@ -76,6 +77,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("DELETE", _ONE): Scope.SUBMIT,
     ("DELETE", "/v1/keys/{key_id}"): Scope.MANAGE,
     ("DELETE", "/v1/session"): ANY,
+    ("DELETE", "/v1/accounts/{account_id}/links"): Scope.MANAGE,
     ("DELETE", "/v1/accounts/{account_id}"): Scope.MANAGE,
 }
 FREE = {("OPTIONS", "/v1/uploads")}
@@ -96,6 +98,7 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/v1/keys"): {"json": {"name": "another", "scopes": ["manage"]}},
     ("POST", "/v1/accounts"): {"json": {"id": "new"}},
     ("PATCH", "/v1/accounts/{account_id}"): {"json": {"name": "renamed"}},
+    ("POST", f"{_ONE}/links"): {"json": {"path": f"artifacts/{_FILE}"}},
     ("POST", "/v1/uploads"): {"headers": {"Upload-Length": "3"}},
     ("PATCH", "/v1/uploads/{upload_id}"): {
         "content": b"abc",

@@ -140,7 +140,9 @@ class Composition:
     def folder(self, name: str, target: str) -> Path:
         """Where the mounted folder `target` of a service lies; it must be mounted."""
         service = self.services[name]
-        volumes = {path: volume for volume, _, path in (one.partition(":") for one in service.get("volumes", ()))}
+        volumes: dict[str, str] = {
+            path: volume for volume, _, path in (str(one).partition(":") for one in service.get("volumes", ()))
+        }
         if target in volumes:
             path = self.root / "volumes" / volumes[target]
         else:
@@ -246,14 +248,14 @@ class Composition:
             for path in (folder, folder / "password"):
                 shutil.chown(path, user, user)
         name, data = environment["POSTGRES_USER"], folder / "data"
-        made = ["-D", data, "-U", name, "-A", "scram-sha-256", "--pwfile", folder / "password", "--no-sync"]
+        made = ["-D", str(data), "-U", name, "-A", "scram-sha-256", "--pwfile", str(folder / "password"), "--no-sync"]
         subprocess.run([_found("initdb"), *made], check=True, user=user, cwd=folder, stdout=subprocess.DEVNULL)
         sql = f'CREATE DATABASE "{environment["POSTGRES_DB"]}"'
-        single = [_found("postgres"), "--single", "-D", data, "template1"]
+        single = [_found("postgres"), "--single", "-D", str(data), "template1"]
         subprocess.run(single, input=sql, text=True, check=True, user=user, cwd=folder, stdout=subprocess.DEVNULL)
         options = ["-c", "listen_addresses=127.0.0.1", "-c", "unix_socket_directories=", "-c", "log_connections=on"]
         with self.said_path("postgres-err").open("ab") as log:
-            command = [_found("postgres"), "-D", data, "-p", str(self.ports["postgres"]), *options]
+            command = [_found("postgres"), "-D", str(data), "-p", str(self.ports["postgres"]), *options]
             return subprocess.Popen(command, user=user, cwd=folder, stdout=log, stderr=log)
 
     def stop(self) -> None:

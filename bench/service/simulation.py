@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from typing import TypeVar
 
 from sqlalchemy import URL, select
@@ -110,7 +111,7 @@ class _Run:
             Accounts(self.db).create(owner)
         for number in range(load.inspections):
             owner = owners[number % len(owners)]
-            self._at(chance.uniform(0.0, load.span_s), lambda number=number, owner=owner: self._arrive(number, owner))
+            self._at(chance.uniform(0.0, load.span_s), partial(self._arrive, number, owner))
         while self._events:
             self.db.seconds, _, event = heapq.heappop(self._events)
             event()
@@ -153,14 +154,14 @@ class _Run:
             outside_s = max(0.0, task.slot_s - task.stage_s)
             busy_s = outside_s + task.stage_s * self.load.stretch
             self.found.busy_s += busy_s
-            self._at(self.db.seconds + busy_s, lambda lease=lease: self._end(lease))
+            self._at(self.db.seconds + busy_s, partial(self._end, lease))
 
     def _end(self, lease: Lease) -> None:
         recording = self._of[lease.inspection_id]
         task = recording.tasks[lease.key]
         digest = hashlib.sha256(f"{lease.inspection_id} {lease.key}".encode()).hexdigest()
         result = Result(
-            lease.fingerprint, lease.stage, digest, task.facts, f"r/{digest}", task.stage_s, task.peak_rss_bytes
+            lease.fingerprint, lease.stage, digest, dict(task.facts), f"r/{digest}", task.stage_s, task.peak_rss_bytes
         )
         self._timed("complete", lambda: self._plan.complete(lease, result))
         self._at(self.db.seconds + recording.handover_s, self._give_back)

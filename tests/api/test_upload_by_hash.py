@@ -27,10 +27,12 @@ def checksum(data: bytes) -> str:
     return "sha256 " + base64.b64encode(hashlib.sha256(data).digest()).decode()
 
 
-def ask(client: Any, data: bytes, length: int | None = None, **headers: str) -> tuple[int, str, str]:
+def ask(
+    client: Any, data: bytes, headers: dict[str, str] | None = None, length: int | None = None
+) -> tuple[int, str, str]:
     """Status, place and offset of the answer to who has this file to send."""
     sent = {**TUS, "Upload-Length": str(len(data) if length is None else length), "Upload-Checksum": checksum(data)}
-    answer = client.post("/v1/uploads", headers={**sent, **headers})
+    answer = client.post("/v1/uploads", headers={**sent, **(headers or {})})
     return answer.status_code, answer.headers.get("Location", ""), answer.headers.get("Upload-Offset", "")
 
 
@@ -49,7 +51,7 @@ def test_a_file_that_was_sent_is_not_sent_again(backend: Backend, address: str) 
             expires_at = session.get_one(Upload, url.rsplit("/", 1)[1]).expires_at
         assert expires_at is not None
         assert expires_at.year < 2090, "its time begins anew"
-        assert ask(client, DATA, len(DATA) + 1)[0] == 201, "of another length it is another file"
+        assert ask(client, DATA, length=len(DATA) + 1)[0] == 201, "of another length it is another file"
         assert client.head(url, headers=TUS).headers["Upload-Offset"] == str(len(DATA))
         client.delete(url, headers=TUS)
         assert ask(client, DATA)[0] == 201, "it was removed"
@@ -71,16 +73,16 @@ def test_a_file_whose_hash_nobody_followed_is_found(backend: Backend, client: Te
 def test_what_others_sent_is_not_told(backend: Backend, address: str) -> None:
     mine, theirs = backend.key("mine"), backend.key("theirs")
     with httpx.Client(base_url=address) as client:
-        _, url, _ = ask(client, DATA, **mine)
+        _, url, _ = ask(client, DATA, mine)
         client.patch(
             url,
             content=DATA,
             headers={**TUS, **mine, "Content-Type": "application/offset+octet-stream", "Upload-Offset": "0"},
         )
-        status, other, offset = ask(client, DATA, **theirs)
+        status, other, offset = ask(client, DATA, theirs)
         assert (status, offset) == (201, "0")
         assert other != url
-        assert ask(client, DATA, **mine)[:2] == (200, url)
+        assert ask(client, DATA, mine)[:2] == (200, url)
 
 
 @pytest.mark.parametrize("role", ["video", "annotations"])
@@ -121,7 +123,7 @@ def test_a_file_of_an_inspection_that_was_deleted_is_sent_again(backend: Backend
 @pytest.mark.parametrize("value", ["sha1 Lve95gjOVATpfV8EL5X4nxwjKHE=", "sha256", "sha256 abc", "sha256 " + "é" * 43])
 def test_checksums_that_are_none(client: TestClient, value: str) -> None:
     headers = {**TUS, "Upload-Length": "5", "Upload-Checksum": value.encode("latin-1")}
-    answer = client.post("/v1/uploads", headers=headers)  # type: ignore[arg-type]  # bytes, as no str may hold them
+    answer = client.post("/v1/uploads", headers=headers)  # bytes, as no str may hold them
     assert (answer.status_code, answer.json()["where"]) == (400, "Upload-Checksum")
 
 

@@ -17,11 +17,11 @@ from bench.soak.toy import GRAPH
 from bench.speed.timing import Table
 from core.errors import BadInput, StageFailed
 from core.settings import make_settings
-from store.db import Database
+from store.db import Database, upgrade
 from store.inspections import Inspections
 from store.plan import Plan
 from store.records import InputFiles, Result
-from tests.databases import BOTH, database_url, put_new_tables, upgrade
+from tests.databases import BOTH, database_url, put_new_tables
 
 SPLIT, PART, JOIN, CONFIRM = 10.0, 20.0, 5.0, 1.0
 ALONE = SPLIT + 4 * PART + JOIN + CONFIRM

@@ -10,6 +10,7 @@ from prometheus_client import CollectorRegistry
 from api import openapi, problems, transport
 from api.auditing import Auditor
 from api.events import EventFeed
+from api.fetching import Fetches
 from api.middleware import RequestMetrics, RequestMiddleware, known_query
 from api.probing import Prober
 from api.resource import Resources
@@ -35,6 +36,7 @@ from api.routes import (
     tables,
     uploads,
     viewer,
+    webhooks,
 )
 from api.services import Services, services_from
 from api.state import State
@@ -47,11 +49,12 @@ from store.events import Events
 from store.keys import KeyRing, Keys
 from store.request_rate import RequestRate
 from store.settings import deployment_settings
+from store.uploads import Digests
 from store.web_sessions import WebSessions
 
 _ROUTERS = (
     *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, reviews),
-    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events, links),
+    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events, links, webhooks),
 )
 
 
@@ -102,7 +105,7 @@ def _from_environment() -> Services:
 def _state(services: Services) -> State:
     registry = CollectorRegistry()
     registry.register(system.ServiceCollector(services))
-    resources = Resources(services)
+    resources, digests = Resources(services), Digests()
     return State(
         services=services,
         keys=KeyRing(Keys(services.db)),
@@ -113,4 +116,6 @@ def _state(services: Services) -> State:
         rate=RequestRate(services.db, services.settings),
         sessions=WebSessions(services.db),
         feed=EventFeed(Events(services.db).last, services.settings),
+        digests=digests,
+        fetches=Fetches(services, digests),
     )

@@ -162,6 +162,8 @@ Submitter = Annotated[Caller, Depends(requires(Scope.SUBMIT))]
 """Parameter of a route that sends, starts, stops or deletes something of the caller's account."""
 Reviewer = Annotated[Caller, Depends(requires(Scope.REVIEW))]
 """Parameter of a route that says something of findings of the caller's account."""
+Manager = Annotated[Caller, Depends(requires(Scope.MANAGE))]
+"""Parameter of a route about how the caller's account is connected to others."""
 Administrator = Annotated[Caller, Depends(requires(Scope.ADMIN))]
 """Parameter of a route about all accounts."""
 AnyCaller = Annotated[Caller, Depends(caller)]

@@ -33,6 +33,8 @@ _BY_CODE = {
     "conflict": HTTPStatus.CONFLICT,
     "unknown_account": HTTPStatus.NOT_FOUND,
     "unknown_key": HTTPStatus.NOT_FOUND,
+    "unknown_webhook": HTTPStatus.NOT_FOUND,
+    "unknown_delivery": HTTPStatus.NOT_FOUND,
     "table_changed": HTTPStatus.CONFLICT,
     "stale_revision": HTTPStatus.CONFLICT,
     "bad_cursor": HTTPStatus.BAD_REQUEST,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from contextlib import ExitStack, asynccontextmanager
 from functools import partial
 from http import HTTPStatus
@@ -14,6 +14,7 @@ from fastapi import Request
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
 
+from api.fetching import Fetches, Wanted
 from api.finding import is_id
 from api.forms import FormReader, Part
 from api.problems import FieldError, Refused, field_errors
@@ -26,6 +27,8 @@ from core.calibration.files import parse_calibration
 from core.errors import BadInput
 from core.fingerprint import digest_of_file
 from core.videos import MAX_VIDEOS
+from store.outbound import MAX_URL
+from store.settings import DeploymentSettings
 
 MAX_PARAMETERS_BYTES = 1 << 20
 MAX_INLINE_BYTES = 8 << 20
@@ -68,36 +71,81 @@ CREATE_BODY: dict[str, Any] = {
 """OpenAPI's description of both."""
 
 
+_SHA256 = Field(None, pattern="^[0-9a-f]{64}$", description="what it must hash to, in hexadecimal")
+_URL = "https URL that the server fetches it from; its host must be among `input_hosts`"
+
+
 class Recorded(BaseModel):
-    """A video whose upload is finished, and its annotations."""
+    """A video that is an upload or lies at a URL, and its annotations."""
 
     model_config = ConfigDict(extra="forbid")
 
-    video_upload: str = Field(description="id of the video's upload")
+    video_upload: str | None = Field(None, description="id of the video's upload")
+    video_url: str | None = Field(None, max_length=MAX_URL, description=_URL)
+    video_sha256: str | None = _SHA256
     annotations_upload: str | None = Field(None, description="id of the annotations' upload")
+    annotations_url: str | None = Field(None, max_length=MAX_URL, description=_URL)
+    annotations_sha256: str | None = _SHA256
     annotations: dict[str, Any] | list[Any] | None = Field(
         None, description="the annotations themselves, in any JSON form that is read, up to 8 MiB in all"
     )
 
+    def require_one_of_each(self, pointer: str) -> None:
+        """422 unless there is one video and at most one of annotations, and each hash belongs to a URL."""
+        videos = {"video_upload": self.video_upload, "video_url": self.video_url}
+        notes = {
+            "annotations": self.annotations,
+            "annotations_upload": self.annotations_upload,
+            "annotations_url": self.annotations_url,
+        }
+        hashes = {"video": self.video_sha256, "annotations": self.annotations_sha256}
+        urls = {"video": self.video_url, "annotations": self.annotations_url}
+        if not any(value is not None for value in videos.values()):
+            raise invalid(
+                [FieldError(pointer=f"{pointer}/video_upload", detail="Field required, or video_url, videos")]
+            )
+        for given in (videos, notes):
+            named = [name for name, value in given.items() if value is not None]
+            if len(named) > 1:
+                detail = f"either {named[0]} or {named[1]}"
+                raise invalid([FieldError(pointer=f"{pointer}/{named[1]}", detail=detail)])
+        for name, sha256 in hashes.items():
+            if sha256 is not None and urls[name] is None:
+                raise invalid([FieldError(pointer=f"{pointer}/{name}_sha256", detail=f"it is for {name}_url")])
 
-class CreateBody(BaseModel):
-    """An inspection of uploads that are finished: of one video, or of several that `videos` lists."""
+    def wanted(self, pointer: str, settings: DeploymentSettings) -> list[Wanted]:
+        """What is to be fetched."""
+        found = []
+        if self.video_url is not None:
+            most = settings.max_upload_bytes
+            found.append(Wanted(f"{pointer}/video_url", self.video_url, self.video_sha256, most))
+        if self.annotations_url is not None:
+            most = settings.max_annotations_bytes
+            found.append(Wanted(f"{pointer}/annotations_url", self.annotations_url, self.annotations_sha256, most))
+        return found
+
+    def fetched(self, pointer: str, uploads: Mapping[str, str]) -> Recorded:
+        """The same with uploads instead of URLs, by the pointers to these."""
+        return Recorded(
+            video_upload=uploads.get(f"{pointer}/video_url", self.video_upload),
+            annotations_upload=uploads.get(f"{pointer}/annotations_url", self.annotations_upload),
+            annotations=self.annotations,
+        )
+
+
+class CreateBody(Recorded):
+    """An inspection of uploads that are finished or of files at URLs: of one video, or of several in `videos`."""
 
     model_config = ConfigDict(
         extra="forbid",
         json_schema_extra={"example": {"video_upload": EXAMPLE_ID, "parameters": PARAMETERS_EXAMPLE}},
     )
 
-    video_upload: str | None = Field(None, description="id of the video's upload")
-    annotations_upload: str | None = Field(None, description="id of the annotations' upload")
-    annotations: dict[str, Any] | list[Any] | None = Field(
-        None, description="the annotations themselves, in any JSON form that is read, up to 8 MiB"
-    )
     videos: list[Recorded] | None = Field(
         None,
         min_length=1,
         max_length=MAX_VIDEOS,
-        description="instead of the three above: several videos of one inspection, in order",
+        description="instead of a single one: several videos of one inspection, in order",
     )
     parameters: Parameters = Parameters()
 
@@ -105,24 +153,18 @@ class CreateBody(BaseModel):
         """Its videos, each with the JSON pointer to it.
 
         Raises:
-            Refused: 422, it names none, or both forms, or annotations twice.
+            Refused: 422, it names none, or both forms, or a video or annotations twice.
         """
-        alone = (self.video_upload, self.annotations_upload, self.annotations)
+        alone = Recorded.model_construct(**{name: getattr(self, name) for name in Recorded.model_fields})
+        found = [("", alone)]
         if self.videos is not None:
-            if any(value is not None for value in alone):
+            if any(getattr(alone, name) is not None for name in Recorded.model_fields):
                 raise invalid(
                     [FieldError(pointer="/videos", detail="either videos, or video_upload and what is with it")]
                 )
             found = [(f"/videos/{number}", one) for number, one in enumerate(self.videos)]
-        elif self.video_upload is None:
-            raise invalid([FieldError(pointer="/video_upload", detail="Field required, or videos")])
-        else:
-            upload, notes, inline = self.video_upload, self.annotations_upload, self.annotations
-            found = [("", Recorded(video_upload=upload, annotations_upload=notes, annotations=inline))]
         for pointer, one in found:
-            if one.annotations is not None and one.annotations_upload is not None:
-                detail = "either annotations or annotations_upload"
-                raise invalid([FieldError(pointer=f"{pointer}/annotations_upload", detail=detail)])
+            one.require_one_of_each(pointer)
         return found
 
 
@@ -183,8 +225,10 @@ def _file(part: Part) -> LocalFile:
 
 
 @asynccontextmanager
-async def asked_by_json(request: Request, services: Services, owner: str, key: str | None) -> AsyncIterator[Asked]:
-    """Find the uploads that a JSON body names."""
+async def asked_by_json(
+    request: Request, services: Services, fetches: Fetches, owner: str, key: str | None
+) -> AsyncIterator[Asked]:
+    """Find the uploads that a JSON body names, and fetch what it names by URL; that is let go of with the block."""
     data = bytearray()
     async for chunk in body_of(request):
         data += chunk
@@ -192,14 +236,20 @@ async def asked_by_json(request: Request, services: Services, owner: str, key: s
             detail = f"a JSON body may have {MAX_INLINE_BYTES} bytes; send larger annotations as an upload"
             raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "too_large", detail, where="body")
     body = await run_in_threadpool(_parse_body, bytes(data))
+    recorded = body.recorded()
+    wanted = [file for pointer, one in recorded for file in one.wanted(pointer, services.settings)]
+    if wanted:
+        found = await fetches.uploads(owner, wanted)
+        uploads = dict(zip((file.pointer for file in wanted), found, strict=True))
+        recorded = [(pointer, one.fetched(pointer, uploads)) for pointer, one in recorded]
     with ExitStack() as inline:
-        sent = [
-            await on_disk(partial(_recorded, services, owner, pointer, one, inline)) for pointer, one in body.recorded()
-        ]
+        sent = [await on_disk(partial(_recorded, services, owner, pointer, one, inline)) for pointer, one in recorded]
         _require_sum([one.video for one in sent], "video", services.settings.max_upload_bytes)
         notes = [one.annotations for one in sent if one.annotations is not None]
         _require_sum(notes, "annotations", services.settings.max_upload_bytes)
         yield Asked(owner, tuple(sent), body.parameters, key)
+    if wanted:
+        await fetches.done(owner, wanted)
 
 
 def _parse_body(data: bytes) -> CreateBody:
@@ -212,7 +262,7 @@ def _parse_body(data: bytes) -> CreateBody:
 
 def _recorded(services: Services, owner: str, pointer: str, one: Recorded, inline: ExitStack) -> Sent:
     """A video and its annotations as files; those that were in the body are removed with `inline`."""
-    video = _upload(services, owner, one.video_upload, f"{pointer}/video_upload")
+    video = _upload(services, owner, one.video_upload or "", f"{pointer}/video_upload")
     if one.annotations_upload is not None:
         return Sent(video, _upload(services, owner, one.annotations_upload, f"{pointer}/annotations_upload"))
     if one.annotations is None:

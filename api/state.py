@@ -8,6 +8,7 @@ from fastapi import Request
 from prometheus_client import CollectorRegistry
 
 from api.events import EventFeed
+from api.fetching import Fetches
 from api.probing import Prober
 from api.resource import Resources
 from api.services import Services
@@ -31,7 +32,8 @@ class State:
     rate: RequestRate
     sessions: WebSessions
     feed: EventFeed
-    digests: Digests = field(default_factory=Digests)
+    digests: Digests
+    fetches: Fetches
     in_flight: set[tuple[str, str]] = field(default_factory=set)
     """(owner, Idempotency-Key) of requests that are being answered."""
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TypeVar
 
 import anyio
@@ -25,3 +27,29 @@ class LimitedThreads:
         if self._limiter is None or self._loop is not loop:
             self._limiter, self._loop = anyio.CapacityLimiter(self._side_by_side), loop
         return await anyio.to_thread.run_sync(call, limiter=self._limiter)
+
+
+async def in_daemon_thread(call: Callable[[], T]) -> T:
+    """Run a call that may take long in a thread of its own, which does not keep the process from ending."""
+    loop = asyncio.get_running_loop()
+    future: asyncio.Future[T] = loop.create_future()
+
+    def settle(value: T | None, error: BaseException | None) -> None:
+        if future.done():  # nobody waits any more
+            return
+        if error is not None:
+            future.set_exception(error)
+        else:
+            future.set_result(value)  # type: ignore[arg-type]  # without an error it is what the call returned
+
+    def run() -> None:
+        value, failed = None, None
+        try:
+            value = call()
+        except BaseException as error:  # noqa: BLE001 - the border of a thread: raised again where it is awaited
+            failed = error
+        with suppress(RuntimeError):  # the loop was closed
+            loop.call_soon_threadsafe(settle, value, failed)
+
+    threading.Thread(target=run, daemon=True).start()
+    return await future

@@ -1,4 +1,4 @@
-"""What the commands about accounts and keys accept; they work in the database of this machine's server."""
+"""What the commands about accounts, keys and webhooks accept; they work in the database of this machine's server."""
 
 from __future__ import annotations
 
@@ -22,11 +22,18 @@ USUAL = "usual"
 
 
 def add_account_commands(commands: Commands[argparse.ArgumentParser]) -> None:
-    """Register accounts and keys."""
+    """Register accounts, keys and webhooks."""
     _accounts(
         _add(commands, "accounts", "make, change, export and delete accounts in the database of this machine's server")
     )
     _keys(_add(commands, "keys", "make, rotate, list and revoke API keys in the database of this machine's server"))
+    _webhooks(
+        _add(
+            commands,
+            "webhooks",
+            "make, test, rotate, list and delete webhooks in the database of this machine's server",
+        )
+    )
 
 
 def _accounts(actions: Commands[argparse.ArgumentParser]) -> None:
@@ -67,6 +74,30 @@ def _keys(actions: Commands[argparse.ArgumentParser]) -> None:
     listing = actions.add_parser("list", help="list all keys")
     listing.add_argument("--account", metavar="ACCOUNT", help="only those of this account")
     for action in (create, rotate, revoke, listing):
+        _json(action)
+
+
+def _webhooks(actions: Commands[argparse.ArgumentParser]) -> None:
+    create = actions.add_parser("create", help="send events of an account to an address, and print the secret once")
+    create.add_argument("target", metavar="URL", help="https, and public unless BLADEATLAS_OUTBOUND_NETWORKS has it")
+    create.add_argument("--account", metavar="ACCOUNT", help="whose it is (default, while there is no other account)")
+    create.add_argument("--types", metavar="NAMES", help="events that are sent, with commas (all)")
+    create.add_argument("--description", default="", metavar="TEXT", help="free text")
+    rotate = actions.add_parser("rotate", help="replace a secret, and print the new one")
+    rotate.add_argument(
+        "--keep-hours", type=float, default=24.0, metavar="N", help="messages are signed with the old one too (24)"
+    )
+    test = actions.add_parser("test", help="send a test message")
+    deliveries = actions.add_parser("deliveries", help="list what was sent and what came of it, newest first")
+    deliveries.add_argument("--limit", type=int, default=50, metavar="N", help="at most so many (50)")
+    redeliver = actions.add_parser("redeliver", help="send a message once more")
+    delete = actions.add_parser("delete", help="remove a webhook")
+    for action in (rotate, test, deliveries, redeliver, delete):
+        action.add_argument("target", metavar="ID", help="of the webhook")
+    redeliver.add_argument("delivery", metavar="DELIVERY", help="its id")
+    listing = actions.add_parser("list", help="list all webhooks")
+    listing.add_argument("--account", metavar="ACCOUNT", help="only those of this account")
+    for action in (create, rotate, test, deliveries, redeliver, delete, listing):
         _json(action)
 
 

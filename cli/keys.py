@@ -38,28 +38,29 @@ def command(parsed: argparse.Namespace) -> int:
 def _change(parsed: argparse.Namespace, database: Database) -> None:
     keys = Keys(database)
     if parsed.action == "create":
-        account = parsed.account or _only_account(database)
+        account = parsed.account or only_account(database)
         scopes = USUAL_SCOPES if parsed.scopes is None else parse_scopes(parsed.scopes.split(","))
-        days = None if parsed.days is None else timedelta(days=_within(parsed.days, _MOST_DAYS, "--days"))
+        days = None if parsed.days is None else timedelta(days=within(parsed.days, _MOST_DAYS, "--days"))
         _show(*keys.create(parsed.name, account, scopes, None if days is None else utc_now() + days), parsed.json)
     elif parsed.action == "rotate":
-        keep = timedelta(hours=_within(parsed.keep_hours, _MOST_HOURS, "--keep-hours"))
+        keep = timedelta(hours=within(parsed.keep_hours, _MOST_HOURS, "--keep-hours"))
         _show(*keys.rotate(parsed.name, keep), parsed.json)
     else:
         keys.revoke(parsed.name)
 
 
-def _within(number: float, most: float, where: str) -> float:
+def within(number: float, most: float, where: str) -> float:
+    """The number; `BadInput` unless it is between 0 and `most`."""
     if not 0 <= number <= most:
         raise BadInput(f"{number:g} is not between 0 and {most:g}", where=where)
     return number
 
 
-def _only_account(database: Database) -> str:
-    """The account `default` while there is no other: a key of the wrong account would show it to strangers."""
+def only_account(database: Database) -> str:
+    """The account `default` while there is no other: what is made for the wrong one would show it to strangers."""
     others = [one.id for one in Accounts(database).all() if one.id != DEFAULT_ACCOUNT and one.closed_at is None]
     if others:
-        message = f"there are several accounts; say whose key it is: {DEFAULT_ACCOUNT}, {', '.join(others)}"
+        message = f"there are several accounts; say whose it is: {DEFAULT_ACCOUNT}, {', '.join(others)}"
         raise BadInput(message, where="--account")
     return DEFAULT_ACCOUNT
 

@@ -24,6 +24,7 @@ from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection
 from store.plan import Plan
 from store.review_models import ReviewEntry
 from store.reviews import Reviews
+from store.webhooks import Webhooks, delete_webhooks
 
 _PAGE = 500
 
@@ -50,7 +51,7 @@ class AccountData:
     account_id: str
 
     def record(self) -> dict[str, Any]:
-        """Account, keys (without what opens anything), inspections, uploads and its part of the audit log.
+        """Account, keys and webhooks (without what opens anything), inspections, uploads, its part of the audit log.
 
         Raises:
             BadInput: there is no such account.
@@ -65,6 +66,7 @@ class AccountData:
                     _inspection(row) | {"reviews": [one.to_dict() for one in Reviews(self.db).since(row.id)]}
                     for row in self._inspections()
                 ],
+                "webhooks": [plain(asdict(one)) for one in Webhooks(self.db).all(self.account_id)],
                 "uploads": [_upload(row) for row in uploads],
                 "audit": [plain(asdict(entry)) for entry in self._audit()],
             }
@@ -105,6 +107,7 @@ class AccountData:
         with self.db.write() as session:
             owned = select(Inspection.id).where(Inspection.owner == self.account_id)
             session.execute(delete(MetadataEntry).where(MetadataEntry.inspection_id.in_(owned)))
+            delete_webhooks(session, self.account_id)
             session.execute(delete(InspectionEvent).where(InspectionEvent.owner == self.account_id))
             session.execute(delete(ReviewEntry).where(ReviewEntry.inspection_id.in_(owned)))
             said = update(Inspection).where(Inspection.owner == self.account_id)

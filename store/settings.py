@@ -10,6 +10,7 @@ import json
 import os
 import re
 from collections.abc import Mapping
+from ipaddress import IPv4Network, IPv6Network, ip_network
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlsplit
@@ -26,6 +27,7 @@ from core.video.limits import MAX_FRAME_PIXELS
 
 PREFIX = "BLADEATLAS_"
 _ORIGIN = re.compile(r"https?://[a-z0-9.-]+(:\d{1,5})?|https?://\[[0-9a-f:.]+\](:\d{1,5})?")
+_HOSTS = re.compile(r"(\*\.)?[A-Za-z0-9][A-Za-z0-9.-]*(:[0-9]{1,5})?")
 _OF_CLIENTS = ("SERVER", "API_KEY")
 """What the commands read that talk to a server; see `cli.remote`."""
 _OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
@@ -182,6 +184,23 @@ class DeploymentSettings(BaseSettings):
     header_seconds: float = Field(
         15.0, gt=0, description="a connection that has sent no whole request header by then is closed, in seconds"
     )
+    outbound_networks: str = Field(
+        "",
+        description="networks that are not public and may be called nevertheless, by webhooks and for inputs, e.g. "
+        "10.1.0.0/16,fd00::/8; without TLS only these",
+    )
+    input_hosts: str = Field(
+        "",
+        description="hosts that inputs may be fetched from by https: files.example.com,*.example.org,host:8443; "
+        "empty = none",
+    )
+    fetch_seconds: float = Field(3600.0, gt=0, description="a file that takes longer to fetch is refused, in seconds")
+    max_fetches: int = Field(16, ge=1, description="requests of one server that fetch inputs at once; more get 429")
+    max_fetches_per_owner: int = Field(4, ge=1, description="the same of one owner")
+    max_webhooks_per_owner: int = Field(20, ge=0, description="webhooks of one account; more get 429")
+    webhook_seconds: float = Field(15.0, gt=0, le=60, description="a receiver must have answered within this")
+    webhook_hours: float = Field(24.0, gt=0, description="an event that was not delivered so long is given up")
+
     trusted_hosts: str = Field(
         "",
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
@@ -223,6 +242,26 @@ class DeploymentSettings(BaseSettings):
             if not valid:
                 raise ValueError(_not_an_address("BROKER"))
         return value
+
+    @field_validator("outbound_networks")
+    @classmethod
+    def _are_networks(cls, value: str) -> str:
+        try:
+            _networks(value)
+        except ValueError:  # whose words repeat the value
+            raise ValueError("must be networks such as 10.1.0.0/16, separated by commas") from None
+        return value
+
+    @field_validator("input_hosts")
+    @classmethod
+    def _are_hosts(cls, value: str) -> str:
+        if not all(_HOSTS.fullmatch(part.strip()) for part in value.split(",") if part.strip()):
+            raise ValueError("must be host, host:port or *.domain, separated by commas")
+        return value
+
+    def allowed_networks(self) -> tuple[IPv4Network | IPv6Network, ...]:
+        """Networks that are not public and may be called nevertheless."""
+        return _networks(self.outbound_networks)
 
     def folder(self, name: str) -> Path:
         """A folder of the data folder."""
@@ -283,6 +322,11 @@ class DeploymentSettings(BaseSettings):
     def worker_count(self) -> int:
         """Number of tasks side by side."""
         return self.workers or available_cores()
+
+
+def _networks(text: str) -> tuple[IPv4Network | IPv6Network, ...]:
+    """Networks separated by commas; ValueError for what is none."""
+    return tuple(ip_network(part.strip()) for part in text.split(",") if part.strip())
 
 
 def available_cores() -> int:

@@ -37,6 +37,7 @@ from worker.mirror import open_results
 from worker.periodic import Periodic
 from worker.publish import Publisher
 from worker.runner import TICK_S, Heartbeat, TaskRunner, ids
+from worker.webhooks import webhook_sender
 
 _task_log = logger("bladeatlas.tasks")
 _runners_log = logger("bladeatlas.runners")
@@ -46,6 +47,10 @@ _AFTER_FAILURE_S = 5.0
 """Until runners that something stopped are started again."""
 _CLEAN_EVERY = 6
 """Rounds of the sweeper between two of the cleaner, which lists whole folders."""
+_SEND_PER_SWEEP = 5
+"""Looks for events to send in the time of one round of the sweeper."""
+_SENDERS = 2
+"""Threads that send to webhooks, so that one slow receiver does not stop all others."""
 
 
 class ConcurrencyLimit:
@@ -179,8 +184,13 @@ class WorkerService:
             settings.stale_s,
         )
         self._publisher = Periodic("publisher", publisher.publish_all, settings.sweep_s)
+        self._sender = webhook_sender(settings, self.database)
         self._periodic = (
             self._publisher,
+            *(
+                Periodic(f"webhooks_{number}", self._sender.round, settings.sweep_s / _SEND_PER_SWEEP)
+                for number in range(_SENDERS)
+            ),
             Periodic("cleaner", cleaner.round, settings.sweep_s * _CLEAN_EVERY),
             Periodic("registry", self.report, settings.heartbeat_s),
         )
@@ -210,6 +220,7 @@ class WorkerService:
 
     def stop(self) -> None:
         """End them, and say so."""
+        self._sender.stopped.set()
         for task in self._periodic:
             task.stop()
         self._registry.gone(self.name)

@@ -82,7 +82,7 @@ async def _asked(request: Request, state: State, caller: Caller, key: str | None
         async with asked_by_form(request, state.services, caller.owner, key) as asked:
             yield asked
     elif kind == "application/json":
-        async with asked_by_json(request, state.services, caller.owner, key) as asked:
+        async with asked_by_json(request, state.services, state.fetches, caller.owner, key) as asked:
             yield asked
     else:
         detail = "send multipart/form-data with the files, or application/json with finished uploads"

@@ -148,6 +148,10 @@ class Limits(BaseModel):
                 "max_event_streams": 500,
                 "max_event_streams_per_owner": 20,
                 "event_days": 30.0,
+                "max_webhooks_per_owner": 20,
+                "max_fetches": 16,
+                "max_fetches_per_owner": 4,
+                "fetch_seconds": 3600.0,
                 "max_frame_pixels": 40000000,
                 "max_video_frames": 500000,
                 "max_video_seconds": 21600.0,
@@ -183,6 +187,10 @@ class Limits(BaseModel):
     max_event_streams: int = Field(description="streams of events that a server keeps open; more get 429")
     max_event_streams_per_owner: int = Field(description="the same of one owner")
     event_days: float = Field(description="events are kept so long")
+    max_webhooks_per_owner: int = Field(description="webhooks of one account; more get 429")
+    max_fetches: int = Field(description="requests of one server that fetch inputs by URL at once; more get 429")
+    max_fetches_per_owner: int = Field(description="the same of one owner")
+    fetch_seconds: float = Field(description="a file by URL that takes longer gets 422")
     max_frame_pixels: int = Field(description="largest picture of a video in pixels; larger ones get 422")
     max_video_frames: int = Field(description="frames that a video's header may state; more get 422")
     max_video_seconds: float = Field(description="length that a video's header may state; longer ones get 422")

@@ -10,13 +10,16 @@ from fastapi.testclient import TestClient
 
 from api.auth import COOKIE
 from store.account_models import Scope
+from store.deliveries import Deliveries
 from store.keys import Keys
+from store.webhooks import Webhooks
 from tests.api.conftest import TUS, Backend, client_of
 from tests.api.test_results import ROWS
 
 ANY = None
 """Any valid key will do."""
 _ONE = "/v1/inspections/{inspection_id}"
+_HOOK = "/v1/webhooks/{webhook_id}"
 ROUTES: dict[tuple[str, str], Scope | None] = {
     ("GET", "/metrics"): Scope.READ,
     ("GET", "/v1/system"): Scope.READ,
@@ -72,9 +75,17 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("POST", "/v1/accounts"): Scope.ADMIN,
     ("PATCH", "/v1/accounts/{account_id}"): Scope.ADMIN,
     ("GET", "/v1/audit"): Scope.ADMIN,
+    ("GET", "/v1/webhooks"): Scope.MANAGE,
+    ("POST", "/v1/webhooks"): Scope.MANAGE,
+    ("GET", _HOOK): Scope.MANAGE,
+    ("POST", f"{_HOOK}/rotate"): Scope.MANAGE,
+    ("POST", f"{_HOOK}/test"): Scope.MANAGE,
+    ("GET", f"{_HOOK}/deliveries"): Scope.MANAGE,
+    ("POST", f"{_HOOK}/deliveries/{{delivery_id}}/redeliver"): Scope.MANAGE,
     # What takes away what the others need comes last.
     ("DELETE", "/v1/uploads/{upload_id}"): Scope.SUBMIT,
     ("DELETE", _ONE): Scope.SUBMIT,
+    ("DELETE", _HOOK): Scope.MANAGE,
     ("DELETE", "/v1/keys/{key_id}"): Scope.MANAGE,
     ("DELETE", "/v1/session"): ANY,
     ("DELETE", "/v1/accounts/{account_id}/links"): Scope.MANAGE,
@@ -86,7 +97,7 @@ HIDDEN = {route for route in ROUTES if route[0] == "HEAD" and route[1].endswith(
 """Not in the description of the API."""
 _FILE = "quality.json"
 """Name of a published file, and of one of every page."""
-OF_AN_ACCOUNT = ("{inspection_id}", "{upload_id}", "{key_id}", "{account_id}")
+OF_AN_ACCOUNT = ("{inspection_id}", "{upload_id}", "{key_id}", "{account_id}", "{webhook_id}")
 BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/v1/inspections"): {"json": {"video_upload": "0" * 32}},
     ("PATCH", _ONE): {"json": {"label": "renamed"}},
@@ -96,6 +107,7 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     },
     ("POST", f"{_ONE}/reviews/import"): {"json": {"schema_version": 2, "records": []}},
     ("POST", "/v1/keys"): {"json": {"name": "another", "scopes": ["manage"]}},
+    ("POST", "/v1/webhooks"): {"json": {"url": "https://192.0.0.9/"}},
     ("POST", "/v1/accounts"): {"json": {"id": "new"}},
     ("PATCH", "/v1/accounts/{account_id}"): {"json": {"name": "renamed"}},
     ("POST", f"{_ONE}/links"): {"json": {"path": f"artifacts/{_FILE}"}},
@@ -124,12 +136,15 @@ class Place:
         self.key(Scope.READ)
         files = {"quality.json": b'{"flags": []}', "summary.json": b"{}"}
         files |= dict.fromkeys((f"viewer/{_FILE}", f"models/1/viewer/{_FILE}"), b"{}")
+        hook = Webhooks(self.backend.db).create("mine", "https://192.0.0.9/")[0].id
         spare = Keys(self.backend.db).create("spare", "mine", [Scope.MANAGE])[0].id
         self.names = {
             "inspection_id": self.backend.finished("one", files, owner="mine", **ROWS),
             "upload_id": self.backend.services.uploads.create("mine", 3, {}).id,
             "key_id": spare,
             "account_id": "mine",
+            "webhook_id": hook,
+            "delivery_id": Deliveries(Webhooks(self.backend.db)).test(hook).id,
             "name": "draft",
             "path": _FILE,
             "index": "0",

@@ -25,5 +25,16 @@ def test_a_command_has_a_function_that_takes_its_arguments(name: str) -> None:
 
 
 def test_the_commands_are_those_of_the_contract() -> None:
-    assert {"run", "serve", "worker", "submit", "status", "watch", "download", "cancel", "keys"} <= commands().keys()
+    assert {
+        "run",
+        "serve",
+        "worker",
+        "submit",
+        "status",
+        "watch",
+        "download",
+        "cancel",
+        "keys",
+        "webhooks",
+    } <= commands().keys()
     assert {"probe", "check", "point", "views", "options", "version"} <= commands().keys()

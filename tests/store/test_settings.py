@@ -37,7 +37,10 @@ def test_a_variable_that_nothing_reads(monkeypatch: pytest.MonkeyPatch, variable
 
 
 def test_values_that_do_not_fit_are_named_and_not_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, value in (("MAX_ACTIVE", "secret"), ("ARTIFACTS_OPTIONS", "{secret")):
+    for name, value in (
+        *(("MAX_ACTIVE", "secret"), ("ARTIFACTS_OPTIONS", "{secret")),
+        *(("OUTBOUND_NETWORKS", "10.0.0.0/8, secret"), ("INPUT_HOSTS", "files.test, https://secret")),
+    ):
         monkeypatch.setenv(PREFIX + name, value)
         with pytest.raises(BadInput, match=f"(?i){name}") as caught:
             deployment_settings()

@@ -1,0 +1,345 @@
+"""Inputs by URL from a local https server with an authority of its own: what is fetched, and what is refused."""
+
+from __future__ import annotations
+
+import hashlib
+import ssl
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from ipaddress import ip_network
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+import trustme
+from fastapi import FastAPI
+from sqlalchemy import select
+
+from api.app import create_app
+from store.downloads import AllowedHosts, Downloads
+from store.leasing import input_files
+from store.models import Inspection, Upload
+from store.outbound import Outbound
+from tests.api.conftest import Backend
+
+HERE = "127.0.0.2"
+"""The address that the tests allow; 127.0.0.1 stands for the inside of a network."""
+DATA = bytes(range(256)) * 12_000
+
+
+@dataclass
+class Files:
+    """A server of files that can be told to misbehave."""
+
+    port: int = 0
+    content: dict[str, bytes] = field(default_factory=lambda: {"/video": DATA, "/notes": b"[]"})
+    redirects: dict[str, str] = field(default_factory=dict)
+    cut_after: list[int] = field(default_factory=list)
+    """Bytes after which the next answers are cut off, one after the other."""
+    tag: str = '"one"'
+    status: int = 0
+    says_length: bool = True
+    piece_s: float = 0.0
+    asked: list[tuple[str, str]] = field(default_factory=list)
+    """Path and ``Range`` of every request."""
+
+    def url(self, path: str = "/video", host: str = "files.test") -> str:
+        return f"https://{host}:{self.port}{path}"
+
+
+class Handler(BaseHTTPRequestHandler):
+    files: Files
+
+    def do_GET(self) -> None:
+        files, wanted = self.files, self.headers.get("Range", "")
+        files.asked.append((self.path, wanted))
+        if self.path in files.redirects or files.status:
+            self.send_response(files.status or 302)
+            self.send_header("Location", files.redirects.get(self.path, ""))
+            self.send_header("Content-Length", "0")
+            self.end_headers()
+            return
+        data = files.content[self.path]
+        start = int(wanted[6:-1]) if wanted and self.headers["If-Range"] == files.tag else 0
+        self.send_response(206 if start else 200)
+        if start:
+            self.send_header("Content-Range", f"bytes {start}-{len(data) - 1}/{len(data)}")
+        if files.says_length:
+            self.send_header("Content-Length", str(len(data) - start))
+        if files.tag:
+            self.send_header("ETag", files.tag)
+        self.end_headers()
+        end = start + files.cut_after.pop(0) if files.cut_after else len(data)
+        for begin in range(start, min(end, len(data)), 100_000):
+            self.wfile.write(data[begin : min(begin + 100_000, end)])
+            time.sleep(files.piece_s)
+        self.close_connection = True
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Tests need no lines of it."""
+
+
+@pytest.fixture(scope="module")
+def authority() -> trustme.CA:
+    return trustme.CA()
+
+
+@pytest.fixture
+def files(authority: trustme.CA, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
+    authority.cert_pem.write_to_path(str(tmp_path / "ca.pem"))
+    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "ca.pem"))
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    authority.issue_cert("files.test", "inside.test").configure_cert(context)
+    made = Files()
+    server = ThreadingHTTPServer((HERE, 0), type("Bound", (Handler,), {"files": made}))
+    server.socket = context.wrap_socket(server.socket, server_side=True)
+    made.port = server.server_address[1]
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread.start()
+    yield made
+    server.shutdown()
+    server.server_close()
+    thread.join()
+
+
+@dataclass
+class Place:
+    """A server that may fetch from `files`."""
+
+    backend: Backend
+    app: FastAPI
+    address: str
+    looked_up: list[str] = field(default_factory=list)
+    leads_to: Callable[[str, int], list[str]] = lambda host, times: [HERE if host == "files.test" else "127.0.0.1"]
+    """Addresses of a name at the so many-th look-up."""
+
+    def look_up(self, host: str, port: int) -> list[str]:
+        self.looked_up.append(host)
+        return self.leads_to(host, len(self.looked_up))
+
+    def post(self, **body: Any) -> httpx.Response:
+        return httpx.post(f"{self.address}/v1/inspections", json=body, timeout=60)
+
+    def post_until(self, **body: Any) -> httpx.Response:
+        """As a client does that is told to come back."""
+        while True:
+            answer = self.post(**body)
+            if answer.status_code != 409:
+                return answer
+            assert (answer.json()["code"], answer.json()["retryable"]) == ("fetching", True)
+            assert answer.headers["Retry-After"] == "5"
+            time.sleep(0.1)
+
+
+@pytest.fixture
+def place(backend: Backend, files: Files, serve: Callable[[FastAPI], str], unprobed: None) -> Place:
+    return make_place(backend, files, serve)
+
+
+def make_place(backend: Backend, files: Files, serve: Callable[[FastAPI], str], **settings: Any) -> Place:
+    app = create_app(backend.with_settings(**settings).services)
+    place = Place(backend, app, serve(app))
+    hosts = AllowedHosts.parse(f"files.test:{files.port}, inside.test:{files.port}")
+    outbound = Outbound([ip_network(f"{HERE}/32")], place.look_up)
+    app.state.bladeatlas.fetches.downloads = Downloads(outbound, hosts, sleep=lambda _: None)
+    return place
+
+
+def kept(place: Place, answer: httpx.Response) -> list[bytes]:
+    """The inputs of an inspection, as they lie in the store."""
+    with place.backend.db.read() as session:
+        row = session.get_one(Inspection, answer.json()["id"])
+        keys = [key for one in input_files(row) for key in (one.video, one.annotations) if key]
+    folder = place.backend.services.artifacts.folder
+    assert folder is not None
+    return [(folder / key).read_bytes() for key in keys]
+
+
+def uploads_left(place: Place) -> int:
+    with place.backend.db.read() as session:
+        return len(session.scalars(select(Upload).where(Upload.removed_at.is_(None))).all())
+
+
+def refused(answer: httpx.Response) -> tuple[int, str, str]:
+    problem = answer.json()
+    return answer.status_code, problem["code"], problem["errors"][0]["pointer"]
+
+
+def test_videos_and_annotations_are_fetched(place: Place, files: Files) -> None:
+    digest = hashlib.sha256(DATA).hexdigest()
+    answer = place.post_until(video_url=files.url(), video_sha256=digest, annotations_url=files.url("/notes"))
+    assert answer.status_code == 202, answer.text
+    assert kept(place, answer) == [DATA, b"[]"]
+    assert uploads_left(place) == 0, "the inspection has its own"
+    files.content["/second"] = DATA[:1000]
+    videos = [{"video_url": files.url()}, {"video_url": files.url("/second"), "annotations": []}]
+    assert kept(place, place.post_until(videos=videos)) == [DATA, DATA[:1000], b"[]"]
+
+
+def test_a_transfer_that_is_cut_goes_on_where_it_was(place: Place, files: Files) -> None:
+    files.cut_after = [1_100_000, 0, 700_000]
+    assert kept(place, place.post_until(video_url=files.url())) == [DATA]
+    ranges = [wanted for _, wanted in files.asked]
+    assert len(ranges) == 4
+    assert ranges[0] == ""
+    offsets = [int(wanted[6:-1]) for wanted in ranges[1:]]
+    assert offsets == sorted(offsets)
+    assert 0 < offsets[0] <= 1_100_000
+    assert offsets[-1] > offsets[0]
+
+
+def test_without_a_tag_it_begins_anew(place: Place, files: Files) -> None:
+    files.tag, files.cut_after = "", [1_500_000]
+    assert kept(place, place.post_until(video_url=files.url())) == [DATA]
+    assert [wanted for _, wanted in files.asked] == ["", ""]
+
+
+def test_a_redirect_is_followed_to_where_it_may_go(place: Place, files: Files) -> None:
+    files.redirects = {"/moved": "/again", "/again": files.url()}
+    assert kept(place, place.post_until(video_url=files.url("/moved"))) == [DATA]
+    assert len(place.looked_up) == 3, "each is looked up and checked"
+
+
+def test_who_asks_again_takes_up_the_same_transfer(place: Place, files: Files) -> None:
+    place.app.state.bladeatlas.fetches.wait_s = 0.2
+    files.piece_s = 0.03
+    first = place.post(video_url=files.url())
+    assert (first.status_code, first.json()["code"]) == (409, "fetching")
+    assert place.post_until(video_url=files.url()).status_code == 202
+    assert len(files.asked) == 1
+
+
+@pytest.mark.parametrize(
+    ("host", "code"),
+    [
+        ("elsewhere.test", "host_not_allowed"),
+        ("inside.test", "private_address"),
+        ("files.test.", "unreachable"),  # the same name to the list, but no name of the certificate
+    ],
+)
+def test_hosts_that_are_refused(place: Place, files: Files, host: str, code: str) -> None:
+    place.leads_to = lambda name, times: ["127.0.0.1"] if name == "inside.test" else [HERE]
+    assert refused(place.post(video_url=files.url(host=host))) == (422, code, "/video_url")
+    assert files.asked == []
+    assert uploads_left(place) == 0
+
+
+@pytest.mark.parametrize(
+    ("target", "code"),
+    [
+        ("https://elsewhere.test/video", "host_not_allowed"),
+        ("http://files.test/video", "insecure_url"),
+        ("/moved", "fetch_refused"),
+        ("https://inside.test:PORT/video", "private_address"),
+        ("file:///etc/passwd", "bad_url"),
+    ],
+)
+def test_redirects_that_are_refused(place: Place, files: Files, target: str, code: str) -> None:
+    files.redirects = {"/moved": target.replace("PORT", str(files.port))}
+    answer = place.post(video_upload="0" * 32, annotations_url=files.url("/moved"))
+    assert refused(answer) == (422, code, "/annotations_url")
+    assert {path for path, _ in files.asked} == {"/moved"}
+
+
+def test_a_name_that_leads_elsewhere_at_the_second_look_up_is_refused(place: Place, files: Files) -> None:
+    files.cut_after = [1_100_000]
+    place.leads_to = lambda name, times: [HERE] if times == 1 else [HERE, "127.0.0.1"]
+    assert refused(place.post(video_url=files.url())) == (422, "private_address", "/video_url")
+    assert len(files.asked) == 1
+    assert uploads_left(place) == 0
+
+
+def test_sizes_times_and_answers_that_are_refused(
+    backend: Backend, files: Files, serve: Callable[[FastAPI], str], unprobed: None
+) -> None:
+    settings = {"max_upload_bytes": len(DATA) - 1, "fetch_seconds": 1.0, "max_annotations_bytes": 4}
+    place = make_place(backend, files, serve, **settings)
+    assert refused(place.post(video_url=files.url())) == (413, "too_large", "/video_url")
+    files.content["/video"] = DATA[:-1]
+    wrong = place.post(video_url=files.url(), video_sha256="0" * 64)
+    assert refused(wrong) == (422, "checksum", "/video_url")
+    files.says_length = False
+    assert refused(place.post(video_url=files.url())) == (422, "no_length", "/video_url")
+    files.says_length, files.status = True, 404
+    assert refused(place.post(video_url=files.url())) == (422, "fetch_refused", "/video_url")
+    files.status = 503
+    away = place.post(video_url=files.url())
+    assert refused(away) == (422, "unreachable", "/video_url")
+    assert away.json()["retryable"]
+    files.status, files.piece_s = 0, 0.2
+    assert refused(place.post(video_url=files.url())) == (422, "fetch_timeout", "/video_url")
+    assert uploads_left(place) == 0
+
+
+def test_a_server_that_cuts_for_ever_is_given_up(place: Place, files: Files) -> None:
+    files.cut_after = [1_100_000] + [0] * 20
+    assert refused(place.post(video_url=files.url())) == (422, "unreachable", "/video_url")
+    assert len(files.asked) == 6
+
+
+def test_a_certificate_of_another_authority_is_refused(
+    place: Place, files: Files, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("SSL_CERT_FILE")
+    assert refused(place.post(video_url=files.url())) == (422, "unreachable", "/video_url")
+    assert files.asked == []
+
+
+def test_without_a_list_nothing_is_fetched(backend: Backend, address: str) -> None:
+    body = {"video_url": "https://files.example.com/video.mp4"}
+    answer = httpx.post(f"{address}/v1/inspections", json=body)
+    assert refused(answer) == (422, "host_not_allowed", "/video_url")
+    assert "input_hosts is empty" in answer.json()["detail"]
+
+
+def test_transfers_are_bounded_by_owner(
+    backend: Backend, files: Files, serve: Callable[[FastAPI], str], unprobed: None
+) -> None:
+    place = make_place(backend, files, serve, max_fetches_per_owner=1)
+    place.app.state.bladeatlas.fetches.wait_s = 0.1
+    files.piece_s = 0.05
+    assert place.post(video_url=files.url()).status_code == 409
+    other = place.post(video_url=files.url("/notes"))
+    assert (other.status_code, other.json()["code"]) == (429, "too_many_fetches_of_owner")
+
+
+@pytest.mark.parametrize(
+    ("body", "pointer"),
+    [
+        ({"video_url": "https://files.test/", "video_upload": "0" * 32}, "/video_url"),
+        ({"video_upload": "0" * 32, "annotations": [], "annotations_url": "https://files.test/"}, "/annotations_url"),
+        ({"video_upload": "0" * 32, "video_sha256": "0" * 64}, "/video_sha256"),
+        ({"annotations_url": "https://files.test/"}, "/video_upload"),
+        ({"videos": [{"video_url": "https://files.test/"}], "video_url": "https://files.test/"}, "/videos"),
+        ({"videos": [{}]}, "/videos/0/video_upload"),
+    ],
+)
+def test_bodies_that_say_two_things(address: str, body: dict[str, Any], pointer: str) -> None:
+    answer = httpx.post(f"{address}/v1/inspections", json=body)
+    assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, pointer)
+
+
+@pytest.mark.parametrize(
+    ("entries", "url", "allowed"),
+    [
+        ("files.test", "https://files.test/x", True),
+        ("files.test", "https://FILES.test./x", True),
+        ("files.test", "https://files.test:8443/x", False),
+        ("files.test:8443", "https://files.test:8443/x", True),
+        ("*.files.test", "https://a.b.files.test/x", True),
+        ("*.files.test", "https://files.test/x", False),
+        ("*.files.test", "https://evilfiles.test/x", False),
+        ("files.test", "https://files.test.evil.example/x", False),
+    ],
+)
+def test_a_list_of_hosts_means_what_it_says(entries: str, url: str, allowed: bool) -> None:
+    hosts = AllowedHosts.parse(entries)
+    if allowed:
+        hosts.require(url)
+    else:
+        with pytest.raises(Exception, match="input_hosts has it not"):
+            hosts.require(url)

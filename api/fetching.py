@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
@@ -55,7 +55,7 @@ class _Fetch:
     task: asyncio.Task[list[str]]
     sizes: list[int] = field(default_factory=list)
     came: int = 0
-    asked_at: float = field(default_factory=time.monotonic)
+    asked_at: float = 0.0
 
 
 @dataclass
@@ -65,6 +65,7 @@ class Fetches:
     services: Services
     digests: Digests
     wait_s: float = WAIT_S
+    clock: Callable[[], float] = time.monotonic
     downloads: Downloads = field(init=False)
     _under_way: dict[str, _Fetch] = field(default_factory=dict)
 
@@ -86,27 +87,22 @@ class Fetches:
                 self.downloads.hosts.require(one.url)  # in vain nobody's place is taken
             except BadInput as error:
                 raise _refused(one, error) from None
+        self._forget_old()
         name = _name(owner, wanted)
         fetch = self._under_way.get(name)
         if fetch is None:
             self._require_place(owner)
             fetch = _Fetch(owner, asyncio.create_task(self._fetch_all(name, owner, wanted)))
             self._under_way[name] = fetch
-        fetch.asked_at = time.monotonic()
-        try:
-            async with asyncio.timeout(self.wait_s):
-                found = await asyncio.shield(fetch.task)
-        except TimeoutError:
-            if fetch.task.done():
-                raise
+        fetch.asked_at = self.clock()
+        done, _ = await asyncio.wait((fetch.task,), timeout=self.wait_s)
+        if not done:
             detail = f"{fetch.came} of {sum(fetch.sizes)} bytes are here; send the same request again to go on"
             headers = {"Retry-After": _LATER}
-            raise Refused(HTTPStatus.CONFLICT, "fetching", detail, headers=headers, retryable=True) from None
-        except (BladeAtlasError, Refused):
-            if self._under_way.get(name) is fetch:
-                del self._under_way[name]  # who asks again begins anew
-            raise
-        return found
+            raise Refused(HTTPStatus.CONFLICT, "fetching", detail, headers=headers, retryable=True)
+        if fetch.task.exception() is not None and self._under_way.get(name) is fetch:
+            del self._under_way[name]  # who asks again begins anew
+        return fetch.task.result()
 
     async def done(self, owner: str, wanted: Sequence[Wanted]) -> None:
         """The files of this request were taken over: their uploads end."""
@@ -114,10 +110,13 @@ class Fetches:
         if fetch is not None:
             await run_in_threadpool(partial(self._remove, fetch.task.result()))
 
-    def _require_place(self, owner: str) -> None:
+    def _forget_old(self) -> None:
+        """Let go of files that were not used soon: at their URL there may be others by now."""
         for name, fetch in list(self._under_way.items()):
-            if fetch.task.done() and time.monotonic() - fetch.asked_at > _KEPT_S:
+            if fetch.task.done() and self.clock() - fetch.asked_at > _KEPT_S:
                 del self._under_way[name]  # its uploads end by their own time
+
+    def _require_place(self, owner: str) -> None:
         running = [fetch.owner for fetch in self._under_way.values() if not fetch.task.done()]
         settings = self.services.settings
         for used, allowed, name, suffix in (

@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 from store.account_models import AuditEntry, RequestCount, WebSession
 from store.db import Database
 from store.events import EventType, tell
-from store.integration_models import InspectionEvent
+from store.integration_models import InspectionEvent, WebhookDelivery
 from store.leasing import lock_inspection
 from store.models import (
     ACTIVE_INSPECTION,
@@ -158,7 +158,7 @@ class Retention:
         """Delete what nobody asks for any more.
 
         These are old requests, absent workers, removed uploads, ended reservations and sessions, counts of former
-        minutes, and events and entries of the audit log after their time.
+        minutes, and events, their deliveries and entries of the audit log after their time.
         """
         with self.db.write() as session:
             now = self.db.now(session)
@@ -170,7 +170,10 @@ class Retention:
             session.execute(delete(WebSession).where(WebSession.expires_at < now))
             session.execute(delete(RequestCount).where(RequestCount.minute < now - timedelta(minutes=2)))
             session.execute(delete(AuditEntry).where(AuditEntry.at < now - timedelta(days=self.audit_days)))
-            session.execute(delete(InspectionEvent).where(InspectionEvent.at < now - timedelta(days=self.event_days)))
+            before = now - timedelta(days=self.event_days)
+            session.execute(delete(InspectionEvent).where(InspectionEvent.at < before))  # takes its deliveries along
+            of_tests = (WebhookDelivery.number.is_(None), WebhookDelivery.created_at < before)
+            session.execute(delete(WebhookDelivery).where(*of_tests))
 
 
 _PREVIOUS = select(Inspection.previous).where(Inspection.purged_at.is_(None))

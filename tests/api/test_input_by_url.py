@@ -213,6 +213,19 @@ def test_who_asks_again_takes_up_the_same_transfer(place: Place, files: Files) -
     assert len(files.asked) == 1
 
 
+def test_what_nobody_took_up_soon_is_fetched_anew(place: Place, files: Files) -> None:
+    moment = [0.0]
+    place.app.state.bladeatlas.fetches.clock = lambda: moment[0]
+    wrong = {"video_url": files.url(), "parameters": {"options": {"no.such": 1}}}
+    for later, requests in ((0.0, 1), (100.0, 1), (1000.0, 2)):
+        moment[0] += later
+        assert place.post_until(**wrong).json()["code"] == "bad_parameters"
+        assert len(files.asked) == requests
+    files.content["/video"] = DATA[:5]
+    moment[0] += 1000.0
+    assert kept(place, place.post_until(video_url=files.url())) == [DATA[:5]]
+
+
 @pytest.mark.parametrize(
     ("host", "code"),
     [

@@ -92,7 +92,7 @@ STAGES: dict[str, StageSpec] = {
             fan_out=True,
             weight=7,
         ),
-        _spec("camera", *_LENS, version=2, weight=0.1),
+        _spec("camera", *_LENS, version=3, weight=0.1),
         _spec(
             "matches", *_MATCHER, "matching.window", version=4, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),
@@ -105,7 +105,7 @@ STAGES: dict[str, StageSpec] = {
         _spec("prune", weight=0.1),
         _spec("section", "mapper", "seed", fan_out=True, weight=0.5),
         _spec("reduce_parts", "model.prefer_verified", version=2, weight=0.1),
-        _spec("reverify", *_LENS, "verification", "seed", weight=0.3),
+        _spec("reverify", *_LENS, "verification", "seed", version=2, weight=0.3),
         _spec("perspective", "mapper", "seed", weight=0.5),
         _spec("reduce_perspective", weight=0.1),
         _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),

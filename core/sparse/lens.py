@@ -23,7 +23,11 @@ AGREE = 0.05
 """Starts that end within this share of the chosen focal length agree with it."""
 
 MIN_AGREEMENT = 0.5
-"""Where a smaller share of the starts agrees, the clip does not determine the focal length."""
+"""Where a smaller share of the starts agrees, the clip does not determine the focal length, unless"""
+
+ALIKE, MIN_ALIKE = 0.01, 2
+"""all starts that found a model, so many at least, ended within this share of each other: a start that is far off finds
+none, and says nothing of where the others went."""
 
 FOV_RANGE_DEG = (10.0, 240.0)
 """A focal length that gives another horizontal field of view is no lens."""
@@ -128,7 +132,7 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
         "agreement": agreement,
         "starts": [dict(start) for start in starts],
-        "flags": [] if settings.focal != "estimate" or is_told else _doubts(agreement, reason),
+        "flags": [] if settings.focal != "estimate" or is_told else _doubts(agreement, reason, starts),
     }
 
 
@@ -180,15 +184,21 @@ def _ran_away_alone(chosen: Facts, starts: Sequence[Facts], source_width: int, m
     return hardly and len(starts) > 1 and len(_near(starts, float(chosen["focal_px"]))) <= 1
 
 
-def _doubts(agreement: float | None, reason: str) -> list[FlagFields]:
+def _doubts(agreement: float | None, reason: str, starts: Sequence[Facts]) -> list[FlagFields]:
     """Flags of an estimate; without any usable start nothing agrees."""
     if reason == UNKNOWN:
         return [Flag(UNKNOWN, Severity.WARNING, where="camera").to_dict()]
     share = agreement or 0.0
-    if share >= MIN_AGREEMENT:
+    if share >= MIN_AGREEMENT or (share and _all_alike(starts)):
         return []
     where = "share of the starts that agree on the focal length"
     return [Flag("focal_uncertain", Severity.WARNING, share, MIN_AGREEMENT, where).to_dict()]
+
+
+def _all_alike(starts: Sequence[Facts]) -> bool:
+    """Whether every start that found a model found the same focal length."""
+    found = [float(start["focal_px"]) for start in starts if _found_a_model(start)]
+    return len(found) >= MIN_ALIKE and max(found) <= (1.0 + ALIKE) * min(found)
 
 
 def _agreement(starts: Sequence[Facts], focal: float) -> float:

@@ -111,6 +111,25 @@ def test_starts_that_do_not_agree_are_flagged(agreeing: int, flagged: bool) -> N
     assert choose_lens(FRAMES, CameraSettings(fov_deg=106.0), starts)["flags"] == []
 
 
+@pytest.mark.parametrize(
+    ("found", "flagged"),
+    [
+        ([2751.3, 2751.9], False),  # of photographs of a fountain, 0.1 % off
+        ([1446.0, 1933.0], True),  # of a sinus, where about 700 is right
+        ([3418.0], True),  # of a tube at this width, where 1475 is right
+        ([2751.3, 2790.0], True),
+    ],
+)
+def test_starts_that_found_no_model_do_not_speak_against_those_that_did(found: list[float], flagged: bool) -> None:
+    frames = {**FRAMES, "source_width": 3072, "crop": [0, 0, 3072, 2048]}
+    nothing = [start(70.0 + i, 2500.0 - 300.0 * i, registered=0, points=0) for i in range(4)]
+    starts = [*(start(40.0 + i, focal, error=0.4 + 0.1 * i) for i, focal in enumerate(found)), *nothing]
+    chosen = choose_lens(frames, CameraSettings(), starts)
+    assert chosen["focal_from"] == "estimated"
+    assert chosen["agreement"] < 0.5
+    assert [flag["code"] for flag in chosen["flags"]] == (["focal_uncertain"] if flagged else [])
+
+
 def test_starts_that_found_nothing_fall_back_to_colmap_with_a_reason() -> None:
     starts = [
         start(40.0, 1375.0, registered=0, points=0),

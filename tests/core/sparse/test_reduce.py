@@ -14,7 +14,7 @@ from core.scene.frame import Crop, SourceFrame
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case
-from core.sparse.reduce import Candidate, candidates_of, reduce_cases, reduce_parts, reduce_refined
+from core.sparse.reduce import Candidate, candidates_of, reduce_cases, reduce_parts, reduce_perspective, reduce_refined
 from core.stage import StageTask
 from core.stages import reduce_coarse, reduce_refine
 from tests.core.making_rows import detection, run_frames
@@ -152,6 +152,16 @@ def test_when_every_case_is_vetoed_the_parts_have_their_turn() -> None:
 def test_without_a_part_that_passes_there_is_no_reconstruction(parts: list[Candidate], says: str) -> None:
     with pytest.raises(NoReconstruction, match=says):
         reduce_parts(reduce_refined(case("seg_000", 180, 9, **BENT), []), parts)
+
+
+@pytest.mark.parametrize("cases", [[], [case("perspective_000", 170, 9, **BENT)], [case("perspective_000", 0, 0)]])
+def test_a_perspective_case_that_does_not_pass_leaves_the_run_refused(cases: list[Candidate]) -> None:
+    vetoed = reduce_refined(case("seg_000", 180, 9, **BENT), [])
+    with pytest.raises(NoReconstruction, match="every model was vetoed; nor does a model of a perspective lens"):
+        reduce_perspective(vetoed, "every model was vetoed", cases)
+    passed = reduce_perspective(vetoed, "every model was vetoed", [*cases, case("perspective_001", 160, 9)])
+    assert passed["best"] == "perspective_001"
+    assert [(flag["code"], flag["severity"]) for flag in passed["flags"]] == [("perspective_after_veto", "warning")]
 
 
 def test_without_the_veto_the_score_alone_counts() -> None:

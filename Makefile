@@ -31,8 +31,9 @@ docs: setup ## build the documentation into out/site; a broken link or a page th
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
 # Unit tests wait for databases and child processes more than they compute, so two files run side by side. Whole
-# deployments and runs on the sample fill the cores and watch the clock: one after the other.
-UNIT := $(BIN)/pytest -n 2 --dist loadfile -m "not sample and not deployment"
+# deployments and runs on the sample fill the cores and watch the clock: one after the other. Compiled modules are kept
+# whatever the environment says, because hundreds of processes of this code are started.
+UNIT := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -n 2 --dist loadfile -m "not sample and not deployment"
 
 check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
 	$(UNIT)

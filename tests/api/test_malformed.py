@@ -14,7 +14,7 @@ from store.account_models import DEFAULT_ACCOUNT
 from tests.api.conftest import TUS, Backend, client_of
 from tests.api.test_submit import form, leftovers, post
 from tests.api.test_uploads import begin
-from tests.core.making_videos import every_ms, make_video
+from tests.damage import damaged, damaged_videos
 
 _FORM = form(
     (
@@ -24,39 +24,6 @@ _FORM = form(
     ('Content-Disposition: form-data; name="annotations"; filename="a.zip"', b'{"1.0": {"detections": []}}'),
     ('Content-Disposition: form-data; name="parameters"', json.dumps({"preset": "draft"}).encode()),
 )
-_BITS = (
-    b"\0",
-    b"\r\n",
-    b"--b",
-    b"--b--",
-    b'name="',
-    b"..",
-    b"/",
-    b'"',
-    b";",
-    b"\xff\xfe",
-    b"%00",
-    b"Content-Disposition: ",
-)
-
-
-def damaged(data: bytes, chance: random.Random) -> bytes:
-    """A copy with a few bytes changed, cut out, doubled or put in."""
-    changed = bytearray(data)
-    for _ in range(chance.randint(1, 6)):
-        at, length = chance.randrange(len(changed) + 1), chance.randrange(1, 30)
-        kind = chance.randrange(5)
-        if kind == 0:
-            changed[at : at + 1] = bytes([chance.randrange(256)])
-        elif kind == 1:
-            del changed[at : at + length]
-        elif kind == 2:
-            changed[at:at] = changed[at : at + length]
-        elif kind == 3:
-            changed[at:at] = chance.choice(_BITS)
-        else:
-            del changed[at:]
-    return bytes(changed)
 
 
 def outside(backend: Backend, root: Path) -> list[str]:
@@ -113,17 +80,10 @@ def test_damaged_headers_of_uploads(backend: Backend, client: TestClient) -> Non
 
 
 def test_damaged_videos(backend: Backend, tmp_path: Path) -> None:
-    """Headers of containers and of the streams in them, through the real decoder in its child process."""
+    """What a decoder in a child process says of them; `tests/core/test_intake.py` shows it many more."""
     client = client_of(backend.with_settings(max_active=1000))
-    source = make_video(backend.services.settings.data_dir / "whole.mp4", every_ms(100, 6))
-    whole = source.read_bytes()
-    source.unlink()
-    header = whole.index(b"moov")
-    chance, statuses = random.Random(4), set()
-    for number in range(40):
-        start = (0, header)[number % 2]
-        part = slice(start, start + 1500)
-        video = whole[: part.start] + damaged(whole[part], chance) + whole[part.stop :]
+    statuses = set()
+    for video in damaged_videos(backend.services.settings.data_dir, 6):
         answer = post(client, video)
         statuses.add(answer.status_code)
         assert answer.status_code in (202, 422), answer.text

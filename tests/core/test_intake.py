@@ -14,6 +14,7 @@ import pytest
 
 from core.intake import LimitFields, answer
 from core.video.decode import DecodedFrame, VideoReader
+from tests.damage import damaged_videos
 from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[2]
@@ -117,3 +118,42 @@ def test_its_memory_is_limited() -> None:
 def test_it_does_not_outlive_who_asked() -> None:
     done = ask(parent=1)
     assert (done.returncode, done.stdout) == (1, "")
+
+
+FORKS = """\
+import json, os, sys
+from core import intake
+
+for line in sys.stdin:
+    question = json.loads(line)
+    child = os.fork()
+    if child == 0:
+        intake.limit_process(os.getppid(), question["memory_bytes"], question["seconds"])
+        print(json.dumps(intake.answer(question)), flush=True)
+        os._exit(0)
+    print(json.dumps(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])), flush=True)
+"""
+"""Answers questions as the module does, each in a process with its limits, but loads the libraries once for all."""
+
+
+def test_damaged_videos_are_answered_or_end_their_process(tmp_path: Path) -> None:
+    """Headers of containers and of the streams in them, through the real decoder."""
+    paths = [tmp_path / f"{count}.mp4" for count in range(100)]
+    questions = []
+    for path, video in zip(paths, damaged_videos(tmp_path, len(paths)), strict=True):
+        path.write_bytes(video)
+        recording = {"video": str(path), "annotations": None}
+        questions.append({"recordings": [recording], "roi": FULL, "memory_bytes": 4 << 30, "seconds": 20.0})
+    asked = "".join(json.dumps(question) + "\n" for question in questions)
+    run = subprocess.run(
+        [sys.executable, "-c", FORKS], input=asked, capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    said = [json.loads(line) for line in run.stdout.splitlines()]
+    answers, codes = [one for one in said if isinstance(one, dict)], [one for one in said if isinstance(one, int)]
+    assert len(codes) == len(paths)
+    assert len(answers) == codes.count(0)
+    assert max(codes) == 0, "a decoder may crash, which is a signal; the look itself may not fail"
+    errors = [found["error"] for found in answers if "error" in found]
+    assert 20 < len(errors) < len(answers)
+    assert all(error["code"] and error["kind"] == "BadInput" for error in errors)
+    assert sorted(tmp_path.iterdir()) == sorted(paths)

@@ -5,7 +5,8 @@ import pycolmap
 import pytest
 from numpy.typing import NDArray
 
-from core.sparse.points import Observations, errors_px, move_points, observe
+from core.geometry.lens import lens_of
+from core.sparse.points import Observations, _project, _step, errors_px, move_points, observe
 from core.sparse.trimming import set_lens, solve
 from tests.core.sparse.scene import make_scene, true_model
 
@@ -109,6 +110,38 @@ def test_points_end_where_a_bundle_adjuster_puts_them(disturbed: pycolmap.Recons
     assert errors.mean() <= 1.001 * errors_px(theirs, seen).mean()
     for image_id in model.reg_image_ids():
         assert model.image(image_id).cam_from_world() == disturbed.image(image_id).cam_from_world()
+
+
+@pytest.mark.parametrize("model", DISTORTION)
+def test_the_derivative_of_a_pixel_is_that_of_small_steps(model: str) -> None:
+    camera = pycolmap.Camera.create_from_model_name(1, model, 400.0, 640, 480)
+    params = np.array(camera.params)
+    params[camera.extra_params_idxs()] = DISTORTION[model]
+    camera.params = list(params)
+    lens, rng, step = lens_of(camera).vector(), np.random.default_rng(0), 1e-6
+    jacobian, unused = np.empty((2, 3)), np.empty((2, 3))
+    for _ in range(20):
+        pose = pycolmap.Rigid3d(pycolmap.Rotation3d(rng.normal(0, 0.5, 3)), rng.normal(0, 0.2, 3))
+        place = pose.inverse() * np.array([*rng.uniform(-1.0, 1.0, 2), rng.uniform(1.5, 3.0)])
+        R, t = pose.rotation.matrix(), np.array(pose.translation)
+        seen = np.array(_project(place, R, t, lens, jacobian))
+        assert seen == pytest.approx(np.asarray(camera.img_from_cam(pose * place)).ravel(), abs=1e-9)
+        ahead = [_project(place + offset, R, t, lens, unused) for offset in step * np.eye(3)]
+        behind = [_project(place - offset, R, t, lens, unused) for offset in step * np.eye(3)]
+        assert jacobian == pytest.approx((np.array(ahead) - np.array(behind)).T / (2 * step), abs=1e-4)
+
+
+def test_a_damped_step_solves_its_equations() -> None:
+    rng, out = np.random.default_rng(0), np.empty(3)
+    for damping in (0.0, 0.5):
+        root, side = rng.normal(size=(3, 3)), rng.normal(size=3)
+        normal = root @ root.T
+        _step(normal, side, damping, out)
+        assert out == pytest.approx(np.linalg.solve(normal + damping * np.diag(np.diag(normal)), side))
+    _step(np.eye(3), side, 0.0, out)
+    assert out == pytest.approx(side), "of determinant 1"
+    _step(np.zeros((3, 3)), side, 1.0, out)
+    assert np.isnan(out).all()
 
 
 @pytest.mark.parametrize("loss_px", [1.0, 100.0])

@@ -113,6 +113,24 @@ def test_as_many_keypoints_come_from_every_cell_of_the_frame() -> None:
     assert all(len(own) == n for own in everything.values())
 
 
+def test_a_frame_with_its_keypoints_in_one_cell_gives_all_that_are_wanted_of_it() -> None:
+    xy = np.tile([[1.0, 1.0]], (9, 1))
+    frames = Frames((0, 1), ("a", "b"), (xy, xy), camera_from_dict(LENS))
+    tracks = Tracks(2 * np.arange(10), np.tile([0, 1], 9), np.repeat(np.arange(9), 2))
+    chosen = choose_keypoints(tracks, frames, 6)
+    assert chosen[0].tolist() == chosen[1].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_a_track_is_taken_while_half_of_it_is_wanted() -> None:
+    """Frame 1 has two tracks in two cells; the second one's other half lies in a cell of frame 0 that is full."""
+    near, far = [1.0, 1.0], [WIDTH - 1.0, HEIGHT - 1.0]
+    keypoints = (np.array([near, near, near]), np.array([near, far, far]))
+    frames = Frames((0, 1), ("a", "b"), keypoints, camera_from_dict(LENS))
+    tracks = Tracks(np.array([0, 2, 4, 6]), np.tile([0, 1], 3), np.repeat(np.arange(3), 2))
+    chosen = choose_keypoints(tracks, frames, 1)
+    assert chosen[0].tolist() == chosen[1].tolist() == [0, 1], "the third is wanted in neither frame"
+
+
 def test_the_thin_cache_keeps_places_and_matches() -> None:
     scene = make_scene(4, 600)
     graph, frames = view_graph(scene), frames_of(scene)

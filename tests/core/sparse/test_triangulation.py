@@ -2,10 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pycolmap
+from scipy.optimize import least_squares
 
 from core.sparse.densify import transfer_poses
 from core.sparse.tracks import Tracks
-from core.sparse.triangulation import add_track_points
+from core.sparse.triangulation import _nearest, add_track_points
 from core.sparse.view_graph import Frames
 from core.verification import camera_from_dict
 from tests.core.sparse.scene import LENS, project
@@ -61,6 +62,31 @@ def test_far_points_and_short_tracks_give_none() -> None:
     model, frames = setting(seen())
     assert add_track_points(model, tracks_of([whole(2), [(0, 0), (3, 0)]]), frames) == 0
     assert model.num_points3D() == 0
+
+
+def test_a_track_of_three_that_do_not_meet_gives_no_point() -> None:
+    keypoints = seen()
+    keypoints[2][0] += [30.0, -12.0]
+    model, frames = setting(keypoints)
+    assert add_track_points(model, tracks_of([whole(0)[:3]]), frames) == 0
+    assert model.num_points3D() == 0
+
+
+def test_a_point_lies_where_the_angles_to_its_rays_are_least() -> None:
+    """Cameras ten times as far away count as much: distances to their rays are ten times as large."""
+    centers = np.array([[0.5, 0.0, -1.0], [-0.5, 0.2, -1.0], [4.0, 0.0, -10.0], [-4.0, 3.0, -10.0]])
+    rng = np.random.default_rng(0)
+    rays = -centers / np.linalg.norm(centers, axis=1, keepdims=True) + rng.normal(0, 0.003, (4, 3))
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+
+    def sines(place: np.ndarray) -> np.ndarray:
+        lines = place - centers
+        return np.cross(rays, lines / np.linalg.norm(lines, axis=1, keepdims=True)).ravel()
+
+    best = least_squares(sines, np.zeros(3), xtol=1e-14, ftol=1e-14).x
+    (found,) = _nearest(np.array([0]), rays, centers)
+    assert np.linalg.norm(best) > 1e-3, "the rays do not meet at the origin"
+    assert np.linalg.norm(found - best) < 0.02 * np.linalg.norm(best)
 
 
 def test_images_without_pose_take_no_part() -> None:

@@ -20,6 +20,7 @@ from api.routes import (
     artifacts,
     audit,
     events,
+    exports,
     frames,
     health,
     inspections,
@@ -54,7 +55,7 @@ from store.web_sessions import WebSessions
 
 _ROUTERS = (
     *(health, pages, system, options, uploads, inspections, actions, row, stages, tables, reviews),
-    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events, links, webhooks),
+    *(artifacts, viewer, report, frames, session, keys, accounts, audit, events, links, webhooks, exports),
 )
 
 
@@ -84,7 +85,7 @@ def create_app(services: Services | None = None) -> FastAPI:
     openapi.install(app)
     # The last one added is the first that sees a request: refusals are named and counted too.
     settings = state.services.settings
-    app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=settings.host_names())
+    app.add_middleware(TrustMiddleware, keys=state.keys, trusted_hosts=settings.host_names(), no_auth=settings.no_auth)
     transport.install(app, settings.origins())
     app.add_middleware(
         RequestMiddleware, metrics=RequestMetrics(state.registry), auditor=Auditor(AuditLog(state.services.db))

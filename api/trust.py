@@ -44,6 +44,15 @@ class HostName:
         return HostName(found[1].lower().strip("[]"), found[2]) if found else None
 
     @property
+    def is_address(self) -> bool:
+        """True for an address, which no name server gives another meaning."""
+        try:
+            ipaddress.ip_address(self.name)
+        except ValueError:
+            return False
+        return True
+
+    @property
     def is_loopback(self) -> bool:
         """True for names that mean this machine whatever a name server says."""
         return self.name == "localhost" or is_loopback_address(self.name)
@@ -60,8 +69,8 @@ def is_loopback_address(text: str) -> bool:
 class TrustMiddleware:
     """Refuses other names with 421 and, without keys, other sites with 403; nothing of the request is done then."""
 
-    def __init__(self, app: ASGIApp, keys: KeyRing, trusted_hosts: frozenset[str]) -> None:
-        self._app, self._keys, self._trusted = app, keys, trusted_hosts
+    def __init__(self, app: ASGIApp, keys: KeyRing, trusted_hosts: frozenset[str], *, no_auth: bool = False) -> None:
+        self._app, self._keys, self._trusted, self._no_auth = app, keys, trusted_hosts, no_auth
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Look at the headers and pass the request on."""
@@ -79,6 +88,9 @@ class TrustMiddleware:
         local, own = host is not None and host.is_loopback, is_own_site(request)
         if local and own:
             return  # fine with and without keys, so the database need not be asked
+        if self._no_auth:
+            self._require_no_foreign_page(host, own)
+            return
         if not self._keys.fresh:
             await run_in_threadpool(self._keys.refresh)
         if not self._keys.ever_made:
@@ -88,6 +100,14 @@ class TrustMiddleware:
             raise Refused(HTTPStatus.FORBIDDEN, "cross_site", detail, where="Origin")
         if self._trusted and not local and (host is None or host.name not in self._trusted):
             raise _misdirected("the server does not go by this name")
+
+    def _require_no_foreign_page(self, host: HostName | None, own: bool) -> None:
+        """Who needs no key must not be a browser that a foreign page makes ask, be it by a name that was rebound."""
+        if host is None or not (host.is_loopback or host.is_address or host.name in self._trusted):
+            raise _misdirected("without keys the server answers to addresses and to the names in trusted_hosts")
+        if not own:
+            detail = "without keys the server answers no page of another site"
+            raise Refused(HTTPStatus.FORBIDDEN, "cross_site", detail, where="Origin")
 
 
 def _misdirected(detail: str) -> Refused:

@@ -232,6 +232,9 @@ def _serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     serve.add_argument("--host", default="127.0.0.1", help="address to bind to (127.0.0.1); others need an API key")
     serve.add_argument("--port", type=int, default=8000, help="port to bind to (8000)")
     serve.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
+    serve.add_argument(
+        "--no-auth", action="store_true", help="let whoever reaches the server read and submit without a key"
+    )
     worker = _add(commands, "worker", "run tasks of a distributed system until stopped", epilog=settings)
     worker.add_argument("--queues", default="cpu,gpu", metavar="cpu,gpu", help="kinds of tasks to run (both)")
     worker.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")

@@ -42,12 +42,14 @@ def command(parsed: argparse.Namespace) -> int:
     if parsed.workers is not None and parsed.workers < 1:
         raise BadInput(f"{parsed.workers} workers; at least 1", where="--workers")
     settings = deployment_settings()
+    if parsed.no_auth:
+        settings = settings.model_copy(update={"no_auth": True})
     json_log.configure()
     say_confinement()
     with _alone(settings) as identity:
         database = open_database(settings)
         try:
-            _refuse_strangers(database, parsed.host)
+            _refuse_strangers(database, parsed.host, settings)
             graph = load_graph(settings.graph)
             with ExitStack() as running:
                 wake = _background(running, settings, database, graph, identity, parsed.workers)
@@ -90,14 +92,16 @@ def _alone(settings: DeploymentSettings) -> Iterator[str]:
         yield name
 
 
-def _refuse_strangers(database: Database, host: str) -> None:
-    """As long as no key was ever made anybody may do anything, so only this machine may call.
+def _refuse_strangers(database: Database, host: str, settings: DeploymentSettings) -> None:
+    """As long as no key was ever made anybody may do anything, so only this machine may call, unless that is wanted.
 
     Raises:
         BadInput: `host` is not loopback and no key was ever made.
     """
     keys = Keys(database)
-    if not keys.ever_made():
+    if settings.no_auth:
+        _log.warning("no_auth", host=host, meaning="whoever reaches this server may read and submit without a key")
+    elif not keys.ever_made():
         if host != "localhost" and not is_loopback_address(host):
             message = f"no API key was ever made, so the server binds only to this machine, not to '{host}'"
             raise BadInput(message, code="no_keys", where="--host")

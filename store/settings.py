@@ -206,6 +206,11 @@ class DeploymentSettings(BaseSettings):
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
         "421; empty = any",
     )
+    no_auth: bool = Field(
+        False,
+        description="whoever reaches the server may read and submit without a key, as the account default; keys still "
+        "work. For networks where a proxy or nobody else decides who may call; the same as `serve --no-auth`",
+    )
     cors_origins: str = Field(
         "",
         description="with API keys: origins whose pages may call this server, e.g. https://front.example.com, "

@@ -71,6 +71,7 @@ ROUTES: dict[tuple[str, str], Scope | None] = {
     ("POST", "/v1/keys"): Scope.MANAGE,
     ("POST", "/v1/keys/{key_id}/rotate"): Scope.MANAGE,
     ("GET", "/v1/accounts/{account_id}"): Scope.READ,
+    ("GET", "/v1/accounts/{account_id}/export.zip"): Scope.MANAGE,
     ("GET", "/v1/accounts"): Scope.ADMIN,
     ("POST", "/v1/accounts"): Scope.ADMIN,
     ("PATCH", "/v1/accounts/{account_id}"): Scope.ADMIN,

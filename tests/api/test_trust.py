@@ -14,7 +14,7 @@ from sqlalchemy.exc import OperationalError
 from api.app import create_app
 from api.problems import MEDIA_TYPE
 from store.keys import Keys
-from tests.api.conftest import Backend
+from tests.api.conftest import Backend, client_of
 
 ID = "0" * 32
 ROUTES = [
@@ -140,3 +140,32 @@ def test_while_the_database_is_away_nobody_else_is_let_in(backend: Backend, monk
     client = TestClient(create_app(backend.services), "http://evil.example", client=("127.0.0.1", 1))
     answer = client.get("/v1/options")
     assert (answer.status_code, answer.json()["code"]) == (503, "database_unreachable")
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Host": "10.0.0.7:8000"}, 200),
+        ({"Host": "inspections.example.com"}, 200),
+        ({"Host": "rebound.example"}, 421),
+        ({"Host": "10.0.0.7", "Sec-Fetch-Site": "cross-site"}, 403),
+        ({"Host": "10.0.0.7", "Origin": "https://evil.example"}, 403),
+        ({"Host": "10.0.0.7", "Authorization": "Bearer wrong"}, 401),
+    ],
+)
+def test_no_auth_is_for_whoever_reaches_it_but_for_no_foreign_page(
+    backend: Backend, headers: dict[str, str], status: int
+) -> None:
+    Keys(backend.db).revoke(Keys(backend.db).create("had one")[0].id)
+    changed = backend.with_settings(no_auth=True, trusted_hosts="inspections.example.com")
+    client = client_of(changed, "192.0.2.7")
+    assert client.get("/v1/inspections", headers=headers).status_code == status
+    assert client_of(backend, "192.0.2.7").get("/v1/inspections", headers=headers).status_code in (401, 403)
+
+
+def test_without_auth_nobody_manages_keys_or_accounts(backend: Backend) -> None:
+    client = client_of(backend.with_settings(no_auth=True))
+    assert client.post("/v1/keys", json={"name": "mine"}).status_code == 403
+    assert client.get("/v1/accounts").status_code == 403
+    assert client.delete("/v1/accounts/default").status_code == 403
+    assert client.post("/v1/uploads", headers={"Tus-Resumable": "1.0.0", "Upload-Length": "3"}).status_code == 201

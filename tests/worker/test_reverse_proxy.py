@@ -31,7 +31,7 @@ _TUS = {"Tus-Resumable": "1.0.0"}
 @pytest.fixture
 def place(tmp_path: Path) -> Iterator[Deployment]:
     database = open_sqlite(tmp_path / "bladeatlas.db")
-    made = Deployment(tmp_path, database, {"BLADEATLAS_TRUSTED_HOSTS": _NAME, "BLADEATLAS_HEADER_SECONDS": "30"})
+    made = Deployment(tmp_path, database, {"BLADEATLAS_TRUSTED_HOSTS": _NAME, "BLADEATLAS_HEADER_SECONDS": "600"})
     yield made
     made.stop()
     database.close()
@@ -53,24 +53,31 @@ def start(place: Deployment, port: int) -> psutil.Process:
     return psutil.Process(process.pid)
 
 
+def answer_times(port: int) -> list[float]:
+    """Seconds of 50 requests one after the other, each on a new connection; the shortest first."""
+    times = []
+    for _ in range(50):
+        began = time.monotonic()
+        httpx.get(f"http://127.0.0.1:{port}/v1/inspections", timeout=30).raise_for_status()
+        times.append(time.monotonic() - began)
+    return sorted(times)
+
+
 def test_1100_half_open_connections_stop_nobody(place: Deployment, many_descriptors: None) -> None:
     port = free_port()
     place.environment["BLADEATLAS_MAX_CONNECTIONS"] = "1000"
     server = start(place, port)
-    log = len(place.said())
+    log, quiet = len(place.said()), answer_times(port)
     with ExitStack() as held:
         for _ in range(1100):
             one = held.enter_context(socket.create_connection(("127.0.0.1", port), timeout=30))
             one.sendall(b"GET /v1/inspections HTTP/1.1\r\nHost: 127")
-        times = []
-        for _ in range(50):
-            began = time.monotonic()
-            httpx.get(f"http://127.0.0.1:{port}/v1/inspections", timeout=10).raise_for_status()
-            times.append(time.monotonic() - began)
+        busy = answer_times(port)
+        assert server.num_fds() > 1000, "they are held all the while"
         place.create("one")
         place.wait("one")  # its task's pipe may have a number above 1023
-        assert server.num_fds() > 1000, "they are held all the while"
-    assert sorted(times)[48] < 0.5, times
+    # The machine may be slow by itself; connections that say nothing must not make it slower.
+    assert busy[48] < max(0.5, 3 * quiet[48]), (quiet, busy)
     said = place.said()[log:]
     assert said.count("connections_dropped") <= 3
     assert len(said) < 20_000

@@ -330,12 +330,11 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: st
         TaskSpec(chunk_key("geometric", i), ("undistort", *depth_keys), {"start": a, "end": b})
         for i, (a, b) in enumerate(chunks)
     ]
-    tasks += [*depth, *geometric]
-    tasks.append(TaskSpec("fuse", ("undistort", *(task.key for task in geometric))))
-    tasks.append(TaskSpec("mesh", ("fuse",)))
+    fuse = TaskSpec("fuse", ("undistort", *(task.key for task in geometric)))
+    tasks += [*depth, *geometric, fuse, TaskSpec("mesh", ("fuse",))]
     # Optional: a row that cannot be told is an outcome, and places are worth having without.
-    tasks.append(TaskSpec("row", ("extend", "mesh"), optional=True))
-    tasks.append(TaskSpec("blades", ("extend", "mesh", "row"), optional=True))
+    shape = ("extend", "mesh")
+    tasks += [TaskSpec("row", shape, optional=True), TaskSpec("blades", (*shape, "row"), optional=True)]
     dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
     tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", graph, "extend", *dense_keys)))
     tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "blades", "map_defects")))
@@ -360,7 +359,9 @@ def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec
     depth, geometric = chunk_key("depth", 0, piece), chunk_key("geometric", 0, piece)
     whole = {"piece": piece, "start": 0, "end": ALL_VIEWS}
     one = {"piece": piece}
+    shape = (key("extend"), key("mesh"))
     surface = (key("extend"), key("fuse"), key("mesh"))
+    grouped = ("annotations", "frames", *surface, key("blades"), key("map_defects"), *timelines)
     return [
         TaskSpec(key("extend"), ("frames", "camera", graph, "pieces"), one, optional=True),
         TaskSpec(key("undistort"), ("frames", "pieces", key("extend")), one, optional=True),
@@ -368,20 +369,15 @@ def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec
         TaskSpec(geometric, (key("undistort"), depth), whole, optional=True),
         TaskSpec(key("fuse"), (key("undistort"), geometric), one, optional=True),
         TaskSpec(key("mesh"), (key("fuse"),), one, optional=True),
-        TaskSpec(key("row"), (key("extend"), key("mesh")), one, optional=True),
-        TaskSpec(key("blades"), (key("extend"), key("mesh"), key("row")), one, optional=True),
+        TaskSpec(key("row"), shape, one, optional=True),
+        TaskSpec(key("blades"), (*shape, key("row")), one, optional=True),
         TaskSpec(
             key("map_defects"),
             ("probe", "annotations", "frames", graph, key("undistort"), geometric, *surface),
             one,
             optional=True,
         ),
-        TaskSpec(
-            key("timeline"),
-            ("annotations", "frames", *surface, key("blades"), key("map_defects"), *timelines),
-            one,
-            optional=True,
-        ),
+        TaskSpec(key("timeline"), grouped, one, optional=True),
         TaskSpec(
             key("viewer"), ("frames", "pictures", key("extend"), key("mesh"), key("timeline")), one, optional=True
         ),

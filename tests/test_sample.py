@@ -55,6 +55,8 @@ OTHER_FILES = (
     "gallery/index.html",
     "gallery/mesh_1.png",
     "gallery/mesh_2.png",
+    "row.json",
+    "row_map.svg",
 )
 JSON_TABLES = ("cases.json", "mapping/detections.json", "mapping/timeline.json", "mapping/defects.json")
 # Timings of the run itself: the only thing that may differ between two runs of the same input.
@@ -232,6 +234,34 @@ def test_accuracy_against_the_truth(finished: tuple[Path, Ended]) -> None:
     assert score["cameras"]["position_median_mm"] < 0.3
     assert score["cameras"]["rotation_median_deg"] < 1.0
     assert score["mesh"]["accuracy_median_mm"] < 0.4
+
+
+def test_the_findings_lie_on_their_blades(finished: tuple[Path, Ended]) -> None:
+    """The two defects of the clip lie on blades 0 and 2 of the scene, on their convex sides."""
+    out, _ = finished
+    row, records = read(out / "row.json"), read(out / "mapping/defects.json")
+    assert row["status"] == "estimated"
+    assert row["pitch_deg"] == pytest.approx(5.625, rel=0.06)
+    assert row["count"][0] <= 64
+    assert [record["side"] for record in records] == ["convex", "convex"]
+    assert int(records[1]["blade"]) - int(records[0]["blade"]) == 2
+    assert [record["span"] for record in records] == pytest.approx([0.523, 0.717], abs=0.05)
+    rows_ = [one for one in read(out / "mapping/detections.json") if one["outcome"] == "mapped"]
+    assert sum(one["blade"] is not None and one["side"] == "convex" for one in rows_) > 0.95 * len(rows_)
+    assert {event["blade"] for event in read(out / "mapping/timeline.json")} == {one["blade"] for one in records}
+    assert read_mesh(out / "mapping/mesh_defects.ply").extra["blade"].max() == len(row["blades"])
+
+
+def test_the_number_of_blades_costs_no_search(finished: tuple[Path, Ended], tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    shutil.copytree(finished[0], out)
+    ended = run(out, "--set", "row.count=64", "--set", "row.edge_a=leading")
+    assert ended.code == 0, ended.errors
+    assert ended.computed() == {"blades", "timeline", "gallery", "viewer"}
+    row = read(out / "row.json")
+    assert (row["status"], row["count"], row["pitch_deg"]) == ("user", [64, 64], 5.625)
+    ids = [[one["id"] for one in read(folder / "mapping/defects.json")] for folder in (finished[0], out)]
+    assert ids[0] == ids[1]
 
 
 def test_running_again_is_instant_and_identical(finished: tuple[Path, Ended]) -> None:

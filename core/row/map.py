@@ -1,19 +1,23 @@
 """``row_map.svg``: the arc of the blades that were seen, with their coverage and the findings on them.
 
 It is a scheme, not a projection: every blade has a cell of one width, root inside and tip outside, edge a at the left.
+Labels come from the annotation file and are not trusted: the template escapes whatever enters the picture.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
-from typing import Any
-from xml.sax.saxutils import escape
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from core.json_files import JsonObject
 
-WIDTH, HEIGHT = 960.0, 470.0
+_MAPS = Environment(
+    loader=PackageLoader("core.row"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+)
+WIDTH, HEIGHT = 960, 470
 CENTRE = (WIDTH / 2, 590.0)
 ROOT, TIP = 250.0, 500.0
 """Radii of the ends of a cell, px."""
@@ -22,11 +26,33 @@ CELL_DEG = 14.0
 ARC_DEG = 104.0
 GAP_SHARE = 0.08
 """Of a cell, left free on each side."""
-MARK = 7.0
-"""Radius of the mark of a finding, px."""
-_SEEN, _GROUND, _INK = "#2f6fb0", "#eef1f4", "#1b2733"
-_HOLLOW = ("concave",)
-"""Sides whose findings are drawn hollow: they lie on the back of what is drawn."""
+DARKEST = 0.7
+"""Opacity of the colour of a blade all of whose surface two views see."""
+
+
+@dataclass(frozen=True)
+class _Text:
+    x: float
+    y: float
+    text: str
+    size: int = 12
+    anchor: str = "middle"
+
+
+@dataclass(frozen=True)
+class _Cell:
+    path: str
+    opacity: float
+    words: str
+
+
+@dataclass(frozen=True)
+class _Mark:
+    x: float
+    y: float
+    hollow: bool
+    """On the concave side, which is the back of what is drawn."""
+    words: str
 
 
 @dataclass(frozen=True)
@@ -35,15 +61,17 @@ class _Arc:
 
     count: int
 
-    @property
-    def cell_deg(self) -> float:
-        return min(CELL_DEG, ARC_DEG / max(self.count, 1))
-
     def at(self, cell: int, along: float, radius: float) -> tuple[float, float]:
         """Where a share of a cell from the left lies at a radius, px."""
         inside = GAP_SHARE + (1.0 - 2.0 * GAP_SHARE) * along
-        angle = radians((cell + inside - self.count / 2) * self.cell_deg) - pi / 2
-        return CENTRE[0] + radius * cos(angle), CENTRE[1] + radius * sin(angle)
+        angle = radians((cell + inside - self.count / 2) * min(CELL_DEG, ARC_DEG / self.count)) - pi / 2
+        return round(CENTRE[0] + radius * cos(angle), 1), round(CENTRE[1] + radius * sin(angle), 1)
+
+    def path(self, cell: int) -> str:
+        """Outline of a cell."""
+        (ax, ay), (bx, by) = self.at(cell, 0, ROOT), self.at(cell, 1, ROOT)
+        (cx, cy), (dx, dy) = self.at(cell, 1, TIP), self.at(cell, 0, TIP)
+        return f"M{ax} {ay}A{ROOT} {ROOT} 0 0 1 {bx} {by}L{cx} {cy}A{TIP} {TIP} 0 0 0 {dx} {dy}Z"
 
 
 def row_map(row: JsonObject) -> str:
@@ -53,62 +81,37 @@ def row_map(row: JsonObject) -> str:
         row: the object of ``row.json``, with its findings.
     """
     if row["status"] == "unknown":
-        body = _text(WIDTH / 2, HEIGHT / 2, f"The row of blades is unknown: {row['reason_text']}.", 16, "middle")
-        return _document(body, "The row of blades is unknown")
-    cells = {int(blade["number"]): int(blade["seen"]) - 1 for blade in row["blades"]}
-    arc, coverage = _Arc(max(cells.values()) + 1), {int(one["blade"]): one for one in row["coverage"]}
-    parts = [_ring(arc, cell, ROOT, TIP, "none", dashed=True) for cell in set(range(arc.count)) - set(cells.values())]
-    parts += [_cell(arc, cell, number, coverage[number]) for number, cell in cells.items()]
-    parts += _marks(arc, cells, row["findings"])
-    parts += _legend(row)
-    parts.append(_text(*arc.at(0, -0.06, ROOT - 4), "root", 12, "end"))
-    parts.append(_text(*arc.at(0, -0.06, TIP), "tip", 12, "end"))
-    return _document("".join(parts), "The blades that were seen, their coverage and the findings on them")
+        words = f"The row of blades is unknown: {row['reason_text']}."
+        return _drawn("The row of blades is unknown", texts=[_Text(WIDTH / 2, HEIGHT / 2, words, 16)])
+    cell_of = {int(blade["number"]): int(blade["seen"]) - 1 for blade in row["blades"]}
+    arc = _Arc(max(cell_of.values()) + 1)
+    cells, texts = [], []
+    for seen in row["coverage"]:
+        number, two, five = int(seen["blade"]), float(seen["views_2"]), float(seen["views_5"])
+        cell = cell_of[number]
+        words = f"blade {number}: two views see {two:.0%} of its reconstructed surface, five {five:.0%}"
+        cells.append(_Cell(arc.path(cell), round(DARKEST * two, 3), words))
+        texts += [
+            _Text(*arc.at(cell, 0.5, TIP + 16), str(number), 15),
+            _Text(*arc.at(cell, 0.5, ROOT - 18), f"{two:.0%}"),
+        ]
+    marks = []
+    for finding in row["findings"]:
+        if finding["blade"] in cell_of:
+            mark, name = _mark(arc, cell_of[finding["blade"]], finding)
+            marks.append(mark)
+            texts.append(_Text(mark.x + 10, mark.y + 4, name, anchor="start"))
+    texts += [_Text(*arc.at(0, -0.06, radius), text, anchor="end") for radius, text in ((ROOT, "root"), (TIP, "tip"))]
+    texts += [_Text(16, HEIGHT - 46 + 18 * k, line, 13, "start") for k, line in enumerate(_legend(row))]
+    gaps = [arc.path(cell) for cell in range(arc.count) if cell not in cell_of.values()]
+    return _drawn("The blades that were seen, their coverage and the findings on them", gaps, cells, marks, texts)
 
 
-def _cell(arc: _Arc, cell: int, number: int, seen: Mapping[str, Any]) -> str:
-    """A blade: its number, and as much of it filled, from the root on, as two views see of its surface."""
-    share = float(seen["views_2"])
-    title = f"blade {number}: two views see {100 * share:.0f} % of its reconstructed surface, five {_percent(seen)}"
-    x, y = arc.at(cell, 0.5, TIP + 16)
-    return (
-        f"<g><title>{title}</title>{_ring(arc, cell, ROOT, TIP, _GROUND)}"
-        f"{_ring(arc, cell, ROOT, ROOT + share * (TIP - ROOT), _SEEN, 0.45)}"
-        f"{_text(x, y, str(number), 15, 'middle')}"
-        f"{_text(*arc.at(cell, 0.5, ROOT - 18), f'{100 * share:.0f} %', 11, 'middle')}</g>"
-    )
-
-
-def _percent(seen: Mapping[str, Any]) -> str:
-    return f"{100 * float(seen['views_5']):.0f} %"
-
-
-def _ring(arc: _Arc, cell: int, low: float, high: float, fill: str, opacity: float = 1.0, dashed: bool = False) -> str:
-    corners = [arc.at(cell, along, radius) for along, radius in ((0, low), (1, low), (1, high), (0, high))]
-    (ax, ay), (bx, by), (cx, cy), (dx, dy) = corners
-    path = (
-        f"M{ax:.1f} {ay:.1f}A{low:.1f} {low:.1f} 0 0 1 {bx:.1f} {by:.1f}L{cx:.1f} {cy:.1f}"
-        f"A{high:.1f} {high:.1f} 0 0 0 {dx:.1f} {dy:.1f}Z"
-    )
-    line = ' stroke-dasharray="4 4"' if dashed else ""
-    return f'<path d="{path}" fill="{fill}" fill-opacity="{opacity:g}" stroke="{_INK}" stroke-width="0.8"{line}/>'
-
-
-def _marks(arc: _Arc, cells: Mapping[int, int], findings: Sequence[JsonObject]) -> list[str]:
-    parts: list[str] = []
-    for one in findings:
-        if one["blade"] not in cells:
-            continue
-        along = 0.5 if one["from_edge_a"] is None else float(one["from_edge_a"])
-        x, y = arc.at(cells[one["blade"]], along, ROOT + float(one["span"]) * (TIP - ROOT))
-        fill = "white" if one["side"] in _HOLLOW else "#c62828"
-        name = f"D{one['defect']}"
-        words = f"{name} {one['label']}: {str(one['side']).replace('_', ' ')}, span {100 * one['span']:.0f} %"
-        parts.append(
-            f'<g><title>{escape(words)}</title><circle cx="{x:.1f}" cy="{y:.1f}" r="{MARK:g}" fill="{fill}" '
-            f'stroke="#c62828" stroke-width="2"/>{_text(x + MARK + 3, y + 4, name, 12, "start")}</g>'
-        )
-    return parts
+def _mark(arc: _Arc, cell: int, finding: JsonObject) -> tuple[_Mark, str]:
+    along = 0.5 if finding["from_edge_a"] is None else float(finding["from_edge_a"])
+    x, y = arc.at(cell, along, ROOT + float(finding["span"]) * (TIP - ROOT))
+    side, name = str(finding["side"]).replace("_", " "), f"D{finding['defect']}"
+    return _Mark(x, y, side == "concave", f"{name} {finding['label']}: {side}, span {finding['span']:.0%}"), name
 
 
 def _legend(row: JsonObject) -> list[str]:
@@ -116,25 +119,21 @@ def _legend(row: JsonObject) -> list[str]:
     blades = f"{low}" if low == high else f"{low} to {high}"
     nowhere = sum(one["blade"] is None for one in row["findings"])
     edge = {"leading": "leading edge", "trailing": "trailing edge"}.get(row["edges"]["a"], "edge a")
-    lines = [
-        f"{len(row['blades'])} of {blades} blades seen, pitch {row['pitch_deg']:.3f} +- {row['pitch_sigma_deg']:.3f}"
-        " degrees",
-        "blue: share of the reconstructed surface of the blade that at least two views see at 60 degrees or less",
+    return [
+        f"{len(row['blades'])} of {blades} blades seen, pitch {row['pitch_deg']:.3f} +- {row['pitch_sigma_deg']:.3f} "
+        "degrees",
+        "blue and below: share of the reconstructed surface that two views see at 60 degrees or less",
         f"marks: findings at their span; left {edge}; hollow: on the concave side"
         + (f"; on no blade: {nowhere}" if nowhere else ""),
     ]
-    return [_text(16, HEIGHT - 46 + 18 * k, line, 13, "start") for k, line in enumerate(lines)]
 
 
-def _text(x: float, y: float, text: str, size: float, anchor: str) -> str:
-    return (
-        f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size:g}" text-anchor="{anchor}" fill="{_INK}">{escape(text)}</text>'
-    )
-
-
-def _document(body: str, title: str) -> str:
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" '
-        f'font-family="system-ui, sans-serif"><title>{title}</title>'
-        f'<rect width="{WIDTH:g}" height="{HEIGHT:g}" fill="white"/>{body}</svg>\n'
-    )
+def _drawn(
+    title: str,
+    gaps: Sequence[str] = (),
+    cells: Sequence[_Cell] = (),
+    marks: Sequence[_Mark] = (),
+    texts: Iterable[_Text] = (),
+) -> str:
+    shapes = {"gaps": gaps, "cells": cells, "marks": marks, "texts": list(texts)}
+    return _MAPS.get_template("row_map.svg").render(title=title, width=WIDTH, height=HEIGHT, **shapes)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import Any
+
+from core.json_files import JsonObject
 
 
 class Side(StrEnum):
@@ -49,7 +49,7 @@ class RowColumns:
     """Standard deviation of the distance from the root."""
 
     @classmethod
-    def from_dict(cls, row: Mapping[str, Any]) -> RowColumns:
+    def from_dict(cls, row: JsonObject) -> RowColumns:
         """From a row of a table; columns that an older one lacks are empty."""
         side = row.get("side")
         values = {name: row.get(name) for name in ROW_COLUMNS if name != "side"}

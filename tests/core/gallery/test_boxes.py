@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from core.gallery.boxes import (
@@ -37,7 +39,7 @@ def test_a_place_without_a_box_gets_a_cross() -> None:
 def test_too_many_frames_keep_the_best_of_every_defect_and_label() -> None:
     def frame(number: int, score: float, label: str, defect: int | None) -> FrameBoxes:
         row = mapped(number, (0, 0, 0), label=label, score=score)
-        return FrameBoxes(SourceFrame(0, number), 0.0, (type(row)(**{**row.to_dict(), "defect_id": defect}),))
+        return FrameBoxes(SourceFrame(0, number), 0.0, (replace(row, defect_id=defect),))
 
     frames = [
         frame(0, 0.9, "dent", 0),

@@ -1,9 +1,10 @@
-"""The description of the API, and the pages that show it. Every byte of them comes from this server."""
+"""The service's pages: inspections of the account, and the description of the API; all bytes come from this server."""
 
 from __future__ import annotations
 
 from functools import cache
 from importlib import resources
+from importlib.resources.abc import Traversable
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
@@ -11,6 +12,8 @@ from fastapi.responses import HTMLResponse, JSONResponse
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from api.problems import not_found
+from core.metadata import KNOWN_METADATA
+from core.settings import PRESET_NAMES
 
 router = APIRouter(include_in_schema=False)
 
@@ -22,6 +25,8 @@ _KINDS = {
     "swagger-ui.css": "text/css",
     "redoc.standalone.js": "text/javascript",
 }
+_OWN = {"inspections.js": "text/javascript", "inspections.css": "text/css"}
+"""Lie beside the templates."""
 _START = "start.js"
 _START_SCRIPT = """\
 SwaggerUIBundle({url: "openapi.json", dom_id: "#docs", deepLinking: true, validatorUrl: null});
@@ -44,6 +49,27 @@ _POLICY = "; ".join(
 )
 
 
+_INSPECTIONS_POLICY = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self'",
+        "img-src 'self' data:",
+        "media-src blob:",  # the length of a video is read before it is sent
+        "connect-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+
+
+@router.get("/")
+def inspections(request: Request) -> Response:
+    """Inspections of the account, and the form that makes one; what it shows it asks for as any client does."""
+    return _page("inspections.html", _INSPECTIONS_POLICY, presets=PRESET_NAMES, metadata=KNOWN_METADATA)
+
+
 @router.get("/openapi.json")
 def document(request: Request) -> Response:
     """OpenAPI 3.1; behind a prefix it says so."""
@@ -55,13 +81,13 @@ def document(request: Request) -> Response:
 @router.get("/docs")
 def docs(request: Request) -> Response:
     """The description to read and to try out."""
-    return _page("docs.html", request.app.title)
+    return _page("docs.html", _POLICY, title=request.app.title, start=_START)
 
 
 @router.get("/redoc")
 def redoc(request: Request) -> Response:
     """The description to read."""
-    return _page("redoc.html", request.app.title)
+    return _page("redoc.html", _POLICY, title=request.app.title)
 
 
 @router.get("/assets/{name}")
@@ -69,6 +95,8 @@ def asset(name: str) -> Response:
     """A file of the pages."""
     if name == _START:
         return Response(_START_SCRIPT, media_type="text/javascript")
+    if name in _OWN:
+        return Response(_templates().joinpath(name).read_bytes(), media_type=_OWN[name])
     if name not in _KINDS:
         raise not_found("file")
     return Response(_bundled(name), media_type=_KINDS[name])
@@ -79,6 +107,10 @@ def _bundled(name: str) -> bytes:
     return (resources.files(_PACKAGE) / "static" / name).read_bytes()
 
 
-def _page(template: str, title: str) -> Response:
-    text = _PAGES.get_template(template).render(title=title, start=_START)
-    return HTMLResponse(text, headers={"Content-Security-Policy": _POLICY, "Referrer-Policy": "no-referrer"})
+def _templates() -> Traversable:
+    return resources.files("api") / "templates"
+
+
+def _page(template: str, policy: str, **values: Any) -> Response:
+    text = _PAGES.get_template(template).render(**{"title": "Inspections", **values})
+    return HTMLResponse(text, headers={"Content-Security-Policy": policy, "Referrer-Policy": "no-referrer"})

@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 
 from tests.api.conftest import Backend
 
-PAGES = ["/docs", "/redoc"]
+PAGES = ["/docs", "/redoc", "/"]
 
 
 class References(HTMLParser):

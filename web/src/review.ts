@@ -55,7 +55,7 @@ function asFinding(id: number, { target, made: record, review }: Reviewed): Find
     id, label: target.label, model: target.model, centroid: at ?? [NaN, NaN, NaN], confidence: null,
     persistence: { k: shown.length, n: Math.max(shown.length, seen.length), share: 0 }, events: [], detections: ids,
     frames: seen.map((one) => ({ frame_index: one.frame, quality: one.quality, detected: shown.includes(one.frame) })),
-    node: null, best_frames: shown.slice(0, 3), size: null, size_sigma: null,
+    drawn: drawn && { frame: drawn.frame, box: drawn.box }, node: null, best_frames: shown.slice(0, 3), size: null, size_sigma: null,
     best: drawn ? { frame: drawn.frame, x: (drawn.box[0] + drawn.box[2]) / 2, y: (drawn.box[1] + drawn.box[3]) / 2 } : null,
   };
 }

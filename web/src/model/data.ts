@@ -84,6 +84,8 @@ export interface Finding {
   readonly root_distance?: number | null;
   readonly root_distance_sigma?: number | null;
   readonly length_unit?: string | null;
+  /** Of a finding that a person drew: where, in shares of the source picture. */
+  readonly drawn?: { readonly frame: number; readonly box: Box } | null;
 }
 
 export interface Visit {

@@ -7,7 +7,7 @@ import { findingName, measured, percent, reasonText, seconds } from "../model/wo
 import { Overlay } from "../scene/overlay";
 import { data, detections, detectionsOfFrame, frames, marks, questions, size, surface, surfaceReason } from "../session";
 import {
-  asked, askPixel, blade, boxes, detection, drawing, finding, frame, layer, overlay, place, seeing, selectFrame, stepFrame, stepSeeing, type Boxes,
+  allFindings, asked, askPixel, blade, boxes, detection, drawing, finding, frame, layer, overlay, place, seeing, selectFrame, stepFrame, stepSeeing, type Boxes,
 } from "../state";
 import { drawn as endDrawing } from "../review";
 import { Tile } from "./marks";
@@ -198,6 +198,13 @@ function Drawn({ width }: { readonly width: number }): JSX.Element | null {
           </g>
         );
       })}
+      {boxes.value !== "off" && allFindings.value.map((own) => own.drawn?.frame === one.index && (
+        <g key={own.id}>
+          <rect class="halo" x={own.drawn.box[0] * size.width} y={own.drawn.box[1] * size.height} width={(own.drawn.box[2] - own.drawn.box[0]) * size.width} height={(own.drawn.box[3] - own.drawn.box[1]) * size.height} fill="none" stroke="#000" stroke-opacity={0.6} stroke-width={4 * unit} />
+          <rect class="by-hand" x={own.drawn.box[0] * size.width} y={own.drawn.box[1] * size.height} width={(own.drawn.box[2] - own.drawn.box[0]) * size.width} height={(own.drawn.box[3] - own.drawn.box[1]) * size.height} stroke-width={2 * unit} />
+          <text x={own.drawn.box[0] * size.width} y={own.drawn.box[3] * size.height + 14 * unit} font-size={12.5 * unit} stroke-width={3 * unit} class="name">{findingName(own.id)} {own.label}</text>
+        </g>
+      ))}
       <Pending unit={unit} />
       {pixel && <path class="spot" d={cross(pixel[0], pixel[1], 9 * unit)} stroke-width={1.6 * unit} />}
       {click && click.shown.reason !== null && <path class="spot miss" d={`M${click.x - 7 * unit} ${click.y - 7 * unit}l${14 * unit} ${14 * unit}m0 ${-14 * unit}l${-14 * unit} ${14 * unit}`} stroke-width={2 * unit} />}

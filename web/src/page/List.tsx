@@ -13,7 +13,7 @@ import {
 import { DetectionThumb, FindingThumb, LabelMark, Tile } from "./marks";
 
 const NAMES: Readonly<Record<Tab, string>> = { findings: "Findings", frames: "Frames", detections: "Detections" };
-const COUNTS: Readonly<Record<Tab, number>> = { findings: data.defects.length, frames: data.frames.length, detections: data.detections.length };
+const counts = (): Readonly<Record<Tab, number>> => ({ findings: allFindings.value.length, frames: data.frames.length, detections: data.detections.length });
 
 export function List(): JSX.Element {
   return (
@@ -21,7 +21,7 @@ export function List(): JSX.Element {
       <div class="tabs" role="tablist" aria-label="What is listed" onKeyDown={stepTab}>
         {TABS.map((name) => (
           <button key={name} role="tab" id={`tab-${name}`} type="button" aria-selected={tab.value === name} aria-controls="listed" tabIndex={tab.value === name ? 0 : -1} onClick={() => setTab(name)}>
-            {NAMES[name]} <span class="count">{COUNTS[name]}</span>
+            {NAMES[name]} <span class="count">{counts()[name]}</span>
           </button>
         ))}
       </div>

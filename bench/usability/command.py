@@ -14,11 +14,10 @@ from typing import Any
 
 from bench.usability.instruments import Gallery, Instrument, ReportPage, Viewer
 from bench.usability.truth import UNKNOWN, Task, answers, boxed_frame
-from cli.inspection_report import files_below
 from core.errors import BadInput
 from core.inspection_report.document import report_document
 from core.inspection_report.forms import Form, written
-from core.inspection_report.source import read_source
+from core.inspection_report.source import files_below, read_source
 from core.outputs import FRAMES, VIEWER_PAGE
 from core.report.csv_form import read_csv
 

@@ -15,6 +15,7 @@ from bench.scenes import command as scenes
 from bench.scenes import variants_command as variants
 from bench.service import simulate
 from bench.soak import command as soak
+from bench.usability import command as usability
 from core.errors import BadInput, BladeAtlasError
 
 
@@ -72,6 +73,9 @@ def make_parser() -> argparse.ArgumentParser:
     mutate_parser = commands.add_parser("mutate", help="change the code of an area and see whether its tests fail")
     mutate.add_arguments(mutate_parser)
     mutate_parser.set_defaults(run=mutate.command)
+    usability_parser = commands.add_parser("usability", help="ask gallery, page and report what an inspector asks")
+    usability.add_arguments(usability_parser)
+    usability_parser.set_defaults(run=usability.command)
     return parser
 
 

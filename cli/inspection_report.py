@@ -10,7 +10,7 @@ from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.inspection_report.document import is_day, report_document
 from core.inspection_report.forms import Form, written
-from core.inspection_report.source import ReadFile, read_source
+from core.inspection_report.source import files_below, read_source
 from core.outputs import DEFECTS
 from core.review.published import reviewed_result
 
@@ -44,17 +44,6 @@ def chosen(names: Sequence[str]) -> list[Form]:
     if unknown:
         raise BadInput(f"'{unknown[0]}' is no form of the report; there are {', '.join(Form)}", where="--form")
     return [form for form in Form if not names or form in names]
-
-
-def files_below(result: Path) -> ReadFile:
-    """Reads published files of a result folder; a link that leads out of it is none."""
-    root = result.resolve()
-
-    def read(path: str) -> bytes | None:
-        file = (root / path).resolve()
-        return file.read_bytes() if file.is_file() and file.is_relative_to(root) else None
-
-    return read
 
 
 def _write(folder: Path, form: Form, data: bytes) -> Path:

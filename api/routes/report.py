@@ -51,8 +51,8 @@ async def report(
 ) -> Response:
     """Findings with pictures, places and sizes, what was not seen, and how far the result can be trusted.
 
-    The same published files give the same bytes. The PDF is tagged (PDF/UA-1); the day of the report is that on which
-    the inspection ended unless `date` tells another, and makes it a PDF/A-2a too.
+    The same published files give the same bytes. The PDF is tagged (PDF/UA-1); the day of the report, that of the last
+    word of a review or on which the inspection ended, makes it a PDF/A-2a too.
     """
     if date is not None and not is_day(date):
         raise invalid([FieldError(pointer="/date", detail="no day of the form YYYY-MM-DD")])
@@ -78,7 +78,7 @@ def _answer(
     ended = None if row.ended_at is None else row.ended_at.date().isoformat()
     source = read_source(_files(services, views))
     reviewed = Reviews(services.db).reviewed(inspection_id)
-    document = report_document(source, reviewed, reviewer, date or ended)
+    document = report_document(source, reviewed, reviewer, date, ended)
     style = services.settings.report_style
     pictures = {path: views[path].sha256 for path in files_of(document["findings"]) if path in views}
     made_of = {"form": form, "document": document, "pictures": pictures, "style": _style_digests(style)}

@@ -21,7 +21,11 @@ NO_ROW = "the row of blades was not looked for"
 
 
 def report_document(
-    source: ReportSource, reviewed: Reviewed | None = None, reviewer: str | None = None, day: str | None = None
+    source: ReportSource,
+    reviewed: Reviewed | None = None,
+    reviewer: str | None = None,
+    day: str | None = None,
+    ended: str | None = None,
 ) -> JsonObject:
     """The object of report.json.
 
@@ -30,6 +34,7 @@ def report_document(
         reviewed: what people say of it; None = nothing yet.
         reviewer: who signs; by default whoever the review names, if that is one person.
         day: of the report, ``YYYY-MM-DD``; by default that of the last word of the review.
+        ended: day on which the inspection ended: that of the report where nothing else tells one.
     """
     summary, quality = source.summary, source.quality
     reviews = {} if reviewed is None else {one.name: one.review for one in reviewed.findings}
@@ -54,7 +59,7 @@ def report_document(
         "added": [] if reviewed is None else added_objects(reviewed),
         "review": {
             "reviewer": reviewer or _only_reviewer(reviews.values()),
-            "date": day or _last_day(reviews.values()),
+            "date": day or _last_day(reviews.values()) or ended,
             "decided": sum(one["human"]["decided"] for one in findings),
             "unattached": [] if reviewed is None else unattached_texts(reviewed),
         },

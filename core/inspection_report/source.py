@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from core.errors import BadInput
 from core.json_files import JsonObject
@@ -43,6 +44,17 @@ class ReportSource:
         if not is_of_page(path) or ".." in path.split("/"):
             raise BadInput(f"'{path}' is no picture of a result's page", where=VIEWER)
         return self.read(path)
+
+
+def files_below(result: Path) -> ReadFile:
+    """Reads published files of a result folder; a link that leads out of it is none."""
+    root = result.resolve()
+
+    def read(path: str) -> bytes | None:
+        file = (root / path).resolve()
+        return file.read_bytes() if file.is_file() and file.is_relative_to(root) else None
+
+    return read
 
 
 def read_source(read: ReadFile) -> ReportSource:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -20,7 +22,14 @@ def one(backend: Backend) -> str:
     """Path of an inspection whose files are those of a committed result."""
     folder = RESULTS / "two_models"
     files = {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    return f"/v1/inspections/{backend.finished('one', files)}"
+    records = json.loads(files["mapping/defects.json"])
+    names = ("id", "label", "model")
+    rows = [{**{name: one[name] for name in names}, **_place(one), "record": one} for one in records]
+    return f"/v1/inspections/{backend.finished('one', files, defects=rows)}"
+
+
+def _place(record: dict[str, Any]) -> dict[str, float]:
+    return dict(zip("xyz", record["centroid"], strict=True))
 
 
 def test_the_resource_leads_to_the_report(client: TestClient, one: str) -> None:
@@ -65,6 +74,21 @@ def test_what_is_at_hand_is_not_made_again(client: TestClient, one: str, form: s
     assert client.get(f"{one}/report.{form}").content == first.content
     other = client.get(f"{one}/report.{form}?reviewer=Ada", headers={"If-None-Match": first.headers["etag"]})
     assert other.status_code == 200
+
+
+def test_what_people_say_is_in_the_next_report(client: TestClient, one: str) -> None:
+    before = client.get(f"{one}/report.json")
+    found = next(row for row in client.get(f"{one}/defects").json() if row["id"] == 1)
+    target = {"kind": "defect", "id": 1, "label": found["label"], "model": 0, "centroid": found["centroid"]}
+    for revision, said in enumerate(({"action": "accept"}, {"action": "severity", "value": "monitor"})):
+        answer = client.post(f"{one}/reviews", json={"target": target, "revision": revision, **said})
+        assert answer.status_code == 201, answer.text
+    after = client.get(f"{one}/report.json", headers={"If-None-Match": before.headers["etag"]})
+    human = {row["name"]: row["human"] for row in after.json()["findings"]}
+    assert (human["D1"]["state"], human["D1"]["disposition"], human["D1"]["by"]) == ("accepted", "monitor", "default")
+    assert human["D0"]["state"] == "not reviewed"
+    assert after.json()["review"]["decided"] == 1
+    assert "accepted" in text_of(client.get(f"{one}/report.pdf").content)
 
 
 def test_what_is_no_report_is_refused(client: TestClient, backend: Backend, one: str) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from cli.inspection_report import files_below
 from cli.main import main
 from core.inspection_report.forms import Form
+from core.inspection_report.source import files_below
 from tests.core.inspection_report.making_reports import text_of
 from tests.core.making_results import RESULTS
 

@@ -11,10 +11,9 @@ from typing import Any
 
 from pypdf import PdfReader
 
-from cli.inspection_report import files_below
 from core.inspection_report.document import report_document
 from core.inspection_report.forms import Form, written
-from core.inspection_report.source import ReportSource, read_source
+from core.inspection_report.source import ReportSource, files_below, read_source
 from core.json_files import JsonObject
 from core.review.published import reviewed_result
 from tests.core.making_results import RESULTS

@@ -1,4 +1,4 @@
-/** What the page draws of `row.json`: where root and tip are, seen from a place. */
+/** What the page shows of `row.json`: where root and tip are, seen from a place, and what was seen of each blade. */
 
 import type { Row, Vec3 } from "./data";
 import { dot, norm, sub } from "./pose";
@@ -18,6 +18,15 @@ export function visibleRow(row: Row, at: Vec3): { readonly tip: Vec3 } | null {
   if (!(length > 0)) return null;
   const sign = (root.startsWith("in") ? 1 : -1) / length;
   return { tip: [sign * away[0], sign * away[1], sign * away[2]] };
+}
+
+/** Of each blade the share of its reconstructed surface that two views see at a usable angle; empty while it is not known. */
+export function coverageOf(row: Row): readonly { readonly blade: string; readonly seen: number }[] {
+  const blades = row["coverage"];
+  if (!Array.isArray(blades)) return [];
+  return blades.flatMap((one: { blade?: unknown; views_2?: unknown } | null) =>
+    one && typeof one.views_2 === "number" && (typeof one.blade === "string" || typeof one.blade === "number") ? [{ blade: String(one.blade), seen: one.views_2 }] : [],
+  );
 }
 
 function three(value: unknown): Vec3 | null {

@@ -4,6 +4,7 @@ import type { ComponentChildren, JSX } from "preact";
 import type { Detection, Finding } from "../model/data";
 import { bladeText, certainty, confidenceReasons, findingName, measured, percent, reasonText, seconds } from "../model/words";
 import { data, frames, surface, visitsOfFinding } from "../session";
+import { coverageOf } from "../model/row";
 import { reviewOf } from "../review";
 import { Ask, Exports, ReviewBar, Said } from "./Reviewing";
 import { blade, detection, finding, go, place, playVisit, selectFrame } from "../state";
@@ -13,10 +14,27 @@ export function Detail(): JSX.Element {
   const [one, own] = [finding.value, detection.value];
   return (
     <section class="panel detail" aria-label="Selection">
-      {one ? <OfFinding one={one} /> : own ? <OfDetection own={own} /> : <p class="note">Nothing is selected. Choose a finding, click the surface, or click a box of the frame.</p>}
+      {one ? <OfFinding one={one} /> : own ? <OfDetection own={own} /> : <Coverage />}
       <Ask />
       <Exports />
     </section>
+  );
+}
+
+/** With nothing selected: of each blade what was not seen, since a place without a finding may just not have been looked at. */
+function Coverage(): JSX.Element {
+  const blades = coverageOf(data.row);
+  return (
+    <>
+      <p class="note">Nothing is selected. Choose a finding, click the surface, or click a box of the frame.</p>
+      {blades.length > 0 && (
+        <div class="coverage">
+          <h3>Not seen by two views</h3>
+          <ul class="reasons">{blades.map(({ blade: own, seen }) => <li key={own}>{percent(1 - seen)} of blade {own}</li>)}</ul>
+          <p class="note">Of the reconstructed surface, at a usable angle. What no view saw has no surface and is not counted.</p>
+        </div>
+      )}
+    </>
   );
 }
 

@@ -62,6 +62,8 @@ class Workload:
     stretch: float = 1.0
     """Stages take so many times as long as recorded."""
     seed: int = 0
+    arrivals_s: Sequence[float] = ()
+    """When each one comes, instead of at random."""
 
 
 @dataclass
@@ -111,7 +113,8 @@ class _Run:
             Accounts(self.db).create(owner)
         for number in range(load.inspections):
             owner = owners[number % len(owners)]
-            self._at(chance.uniform(0.0, load.span_s), partial(self._arrive, number, owner))
+            moment = load.arrivals_s[number] if load.arrivals_s else chance.uniform(0.0, load.span_s)
+            self._at(moment, partial(self._arrive, number, owner))
         while self._events:
             self.db.seconds, _, event = heapq.heappop(self._events)
             event()

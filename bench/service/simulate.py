@@ -99,6 +99,7 @@ def day(url: str | URL, recording: Recording, load: Workload) -> Table:
         f"{load.inspections} in {load.span_s / 3600:g} h on {load.workers} workers, stages x {load.stretch:g}",
         (
             Row("tasks of an inspection", len(recording.tasks)),
+            Row("stages that the recording does not know", ", ".join(sorted(found.unknown)) or "none"),
             Row("seconds of a slot for an inspection", slot_s, "s"),
             Row("queue time, median", median(found.queue_s), "s"),
             Row("queue time, 95 %", float(np.percentile(found.queue_s, 95)), "s"),

@@ -96,12 +96,23 @@ def test_a_queue_grows_when_slots_are_full(tmp_path: Path) -> None:
     assert found.most_waiting > 5
 
 
+def without(*keys: str) -> Recording:
+    return replace(TOY, tasks={key: one for key, one in TOY.tasks.items() if key not in keys})
+
+
 def test_a_task_that_was_not_recorded_ends_the_simulation(tmp_path: Path) -> None:
     with database_url("sqlite", tmp_path) as made:
         put_new_tables(tmp_path / "plan.db")
-        tasks = {key: one for key, one in TOY.tasks.items() if key != "join"}
-        with pytest.raises(StageFailed, match="no task 'join'"):
-            run(made, Workload(1, 0.0, 1), replace(TOY, tasks=tasks))
+        with pytest.raises(StageFailed, match="no task 'part/002'"):
+            run(made, Workload(1, 0.0, 1), without("part/002"))
+
+
+def test_a_stage_newer_than_the_recording_is_named_and_takes_no_time(tmp_path: Path) -> None:
+    with database_url("sqlite", tmp_path) as made:
+        put_new_tables(tmp_path / "plan.db")
+        found = run(made, Workload(1, 0.0, 1), without("confirm"))
+    assert found.unknown == {"confirm"}
+    assert found.end_s == pytest.approx(ALONE - CONFIRM)
 
 
 def test_a_recording_is_what_the_database_says(tmp_path: Path) -> None:
@@ -128,7 +139,7 @@ def test_a_recording_is_what_the_database_says(tmp_path: Path) -> None:
 
 
 def values(table: Table) -> dict[str, float]:
-    return {row.name: float(str(row.value)) for row in table.rows}
+    return {row.name: float(row.value) for row in table.rows if isinstance(row.value, int | float)}
 
 
 def test_the_sample_runs_from_its_recording(tmp_path: Path) -> None:

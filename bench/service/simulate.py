@@ -6,8 +6,9 @@ import argparse
 import json
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
@@ -22,7 +23,7 @@ from bench.soak.servers import PostgresServer
 from bench.speed.timing import Row, Table
 from core.errors import BadInput, StageFailed
 from core.states import InspectionState
-from store.db import Database, open_sqlite, sqlite_url, upgrade
+from store.db import open_sqlite, sqlite_url, upgrade
 from store.graph import load_graph
 from store.models import ACTIVE_INSPECTION, Inspection
 
@@ -98,6 +99,7 @@ def day(url: str | URL, recording: Recording, load: Workload) -> Table:
         f"{load.inspections} in {load.span_s / 3600:g} h on {load.workers} workers, stages x {load.stretch:g}",
         (
             Row("tasks of an inspection", len(recording.tasks)),
+            Row("stages that the recording does not know", ", ".join(sorted(found.unknown)) or "none"),
             Row("seconds of a slot for an inspection", slot_s, "s"),
             Row("queue time, median", median(found.queue_s), "s"),
             Row("queue time, 95 %", float(np.percentile(found.queue_s, 95)), "s"),
@@ -123,46 +125,65 @@ def _costs(found: Simulated) -> Sequence[Row]:
     return rows
 
 
+@dataclass(frozen=True)
+class RealRun:
+    """Jobs of a server with two workers."""
+
+    recordings: Sequence[Recording]
+    arrivals_s: Sequence[float]
+    """Of each, from the first one's arrival."""
+    ends_s: Sequence[float]
+    """The same of their ends."""
+
+
 def calibration(folder: Path, kind: str, jobs: int) -> Table:
-    """Jobs on two real workers, all at once, beside what a simulation of one recorded job says of them."""
+    """Jobs on two real workers beside what simulations say of them.
+
+    One simulation replays what each of their tasks took: it says whether turns, leases and gaps are as in a real run.
+    The other knows two jobs only, each of which ran alone, one before and one after: it is a prediction.
+    """
     graph = TOY if kind == "toy" else CORE
-    recordings, _ = _real(folder / "recorded", graph, 1)
-    _, real = _real(folder / "real", graph, jobs)
-    load = Workload(jobs, 0.0, 2)
-    found = simulate(_sqlite(folder / "simulated.db"), load_graph(graph), recordings, load)
-    sides = {
-        "all of them": (real["end"], found.end_s),
-        "one of them, mean": (real["mean"], float(np.mean(found.whole_s))),
-    }
-    rows = [Row("tasks of a job", len(recordings[0].tasks)), Row("a slot for a job", recordings[0].slot_s, "s")]
-    for name, (measured, simulated) in sides.items():
-        rows += [Row(f"{name}: real", measured, "s"), Row(f"{name}: simulated", simulated, "s")]
-        rows.append(Row(f"{name}: off by", 100 * (simulated / measured - 1), "%", "within 15"))
+    before = _real(folder / "before", graph, [0])
+    real = _real(folder / "real", graph, range(jobs))
+    after = _real(folder / "after", graph, [0])
+    known = {"replayed": real.recordings, "predicted": [*before.recordings, *after.recordings]}
+    rows = [Row("tasks of a job", len(real.recordings[0].tasks))]
+    rows += [Row(f"a slot for a job, {name}", _mean([one.slot_s for one in used]), "s") for name, used in known.items()]
+    measured = {"the last end": max(real.ends_s), "mean time of a job": _mean(_times(real.arrivals_s, real.ends_s))}
+    rows += [Row(f"{what}, real", value, "s") for what, value in measured.items()]
+    for name, recordings in known.items():
+        load = Workload(jobs, 0.0, 2, arrivals_s=real.arrivals_s)
+        found = simulate(_sqlite(folder / f"{name}.db"), load_graph(graph), recordings, load)
+        for what, value in {"the last end": found.end_s, "mean time of a job": _mean(found.whole_s)}.items():
+            rows.append(Row(f"{what}, {name}", value, "s"))
+            rows.append(Row(f"{what}, {name}: off by", 100 * (value / measured[what] - 1), "%", "within 15"))
     return Table("calibration", f"{jobs} jobs ({kind}) at once on two workers", tuple(rows))
 
 
-def _real(folder: Path, graph: str, jobs: int) -> tuple[list[Recording], Mapping[str, float]]:
-    """Run jobs on a server with two workers; what they took, in seconds from the first one's arrival."""
+def _mean(values: Sequence[float]) -> float:
+    return float(np.mean(values))
+
+
+def _times(begins: Sequence[float], ends: Sequence[float]) -> Sequence[float]:
+    return [end - begin for begin, end in zip(begins, ends, strict=True)]
+
+
+def _real(folder: Path, graph: str, jobs: Iterable[int]) -> RealRun:
+    """Run jobs on a server of their own."""
     data = folder / "data"
-    with serving(
-        data, {"BLADEATLAS_WORKERS": "2", "BLADEATLAS_GRAPH": graph, "BLADEATLAS_RESERVE_BYTES": "0"}
-    ) as server:
-        links = [f"{server.url}/v1/inspections/{_submit(server.url, number)}" for number in range(jobs)]
+    settings = {"BLADEATLAS_WORKERS": "2", "BLADEATLAS_GRAPH": graph, "BLADEATLAS_RESERVE_BYTES": "0"}
+    with serving(data, settings) as server:
+        links = [f"{server.url}/v1/inspections/{_submit(server.url, number)}" for number in jobs]
         _until(lambda: all(_state(link) not in ACTIVE_INSPECTION for link in links))
         states = {_state(link) for link in links}
     if states != {InspectionState.SUCCEEDED}:
         raise StageFailed(f"jobs ended {sorted(states)}", where="calibration")
     with closing(open_sqlite(data / "bladeatlas.db")) as db:
-        return record(db), _spans(db)
-
-
-def _spans(db: Database) -> Mapping[str, float]:
-
-    with db.read() as session:
-        rows = session.scalars(select(Inspection)).all()
-    first = min(row.created_at for row in rows)
-    ends = [(row.ended_at - first).total_seconds() for row in rows if row.ended_at is not None]
-    return {"end": max(ends), "mean": float(np.mean(ends))}
+        with db.read() as session:
+            rows = session.scalars(select(Inspection).order_by(Inspection.created_at)).all()
+        first = rows[0].created_at
+        ends = [(row.ended_at - first).total_seconds() for row in rows if row.ended_at is not None]
+        return RealRun(record(db), [(row.created_at - first).total_seconds() for row in rows], ends)
 
 
 def _submit(url: str, number: int) -> str:

@@ -20,10 +20,11 @@ from typing import TypeVar
 from sqlalchemy import URL, select
 from sqlalchemy.orm import Session
 
-from bench.service.recording import Recording
+from bench.service.recording import RecordedTask, Recording
 from core.errors import StageFailed
 from core.settings import Settings
 from core.states import InspectionState
+from core.task_key import stage_of
 from store.accounts import Accounts
 from store.db import Database
 from store.graph import Graph
@@ -62,6 +63,8 @@ class Workload:
     stretch: float = 1.0
     """Stages take so many times as long as recorded."""
     seed: int = 0
+    arrivals_s: Sequence[float] = ()
+    """When each one comes, instead of at random."""
 
 
 @dataclass
@@ -78,6 +81,8 @@ class Simulated:
     """Summed over slots."""
     most_waiting: int = 0
     """Inspections that had come and not begun, at most."""
+    unknown: set[str] = field(default_factory=set)
+    """Stages that are newer than the recording: their tasks were leased and took no time."""
     costs_s: dict[str, list[float]] = field(default_factory=dict)
     """Real seconds of each call of the plan: `create`, `lease`, `idle` (a lease that found nothing), `complete`."""
 
@@ -111,7 +116,8 @@ class _Run:
             Accounts(self.db).create(owner)
         for number in range(load.inspections):
             owner = owners[number % len(owners)]
-            self._at(chance.uniform(0.0, load.span_s), partial(self._arrive, number, owner))
+            moment = load.arrivals_s[number] if load.arrivals_s else chance.uniform(0.0, load.span_s)
+            self._at(moment, partial(self._arrive, number, owner))
         while self._events:
             self.db.seconds, _, event = heapq.heappop(self._events)
             event()
@@ -147,18 +153,24 @@ class _Run:
                 return
             self._free -= 1
             self._waiting.discard(lease.inspection_id)
-            recording = self._of[lease.inspection_id]
-            task = recording.tasks.get(lease.key)
-            if task is None:
-                raise StageFailed(f"the recording has no task '{lease.key}'", where="simulation")
+            task = self._task(lease)
             outside_s = max(0.0, task.slot_s - task.stage_s)
             busy_s = outside_s + task.stage_s * self.load.stretch
             self.found.busy_s += busy_s
             self._at(self.db.seconds + busy_s, partial(self._end, lease))
 
-    def _end(self, lease: Lease) -> None:
+    def _task(self, lease: Lease) -> RecordedTask:
+        """What was recorded of a task; a stage that is newer than the recording takes no time."""
         recording = self._of[lease.inspection_id]
-        task = recording.tasks[lease.key]
+        if lease.key in recording.tasks:
+            return recording.tasks[lease.key]
+        if lease.stage in {stage_of(key) for key in recording.tasks}:
+            raise StageFailed(f"the recording has no task '{lease.key}'", where="simulation")
+        self.found.unknown.add(lease.stage)
+        return RecordedTask(0.0, 0.0, 0, {})
+
+    def _end(self, lease: Lease) -> None:
+        recording, task = self._of[lease.inspection_id], self._task(lease)
         digest = hashlib.sha256(f"{lease.inspection_id} {lease.key}".encode()).hexdigest()
         result = Result(
             lease.fingerprint, lease.stage, digest, dict(task.facts), f"r/{digest}", task.stage_s, task.peak_rss_bytes
@@ -190,7 +202,7 @@ def simulate(url: str | URL, graph: Graph, recordings: Sequence[Recording], load
         load: what comes in.
 
     Raises:
-        StageFailed: a plan asks for a task that was not recorded.
+        StageFailed: a plan asks for a task that was not recorded, of a stage that was.
     """
     db = SetClock(url)
     try:

@@ -76,6 +76,12 @@ def test_stretch_and_handover_cost_what_they_say(url: URL) -> None:
     assert found.end_s == pytest.approx(2 * ALONE + 7 * 3.0 + 6 * 2.0)
 
 
+def test_inspections_come_when_they_are_told_to(url: URL) -> None:
+    found = run(url, Workload(2, 0.0, 1, arrivals_s=(5.0, 5.0 + 3 * ALONE)))
+    assert found.end_s == pytest.approx(5.0 + 4 * ALONE)
+    assert found.queue_s == [0.0, 0.0]
+
+
 def test_more_than_there_is_room_for_waits(url: URL) -> None:
     half = run(url, Workload(20, 20 * ALONE, 2, accounts=3, seed=1))
     assert half.busy_s / (2 * half.end_s) < 0.6
@@ -90,12 +96,23 @@ def test_a_queue_grows_when_slots_are_full(tmp_path: Path) -> None:
     assert found.most_waiting > 5
 
 
+def without(*keys: str) -> Recording:
+    return replace(TOY, tasks={key: one for key, one in TOY.tasks.items() if key not in keys})
+
+
 def test_a_task_that_was_not_recorded_ends_the_simulation(tmp_path: Path) -> None:
     with database_url("sqlite", tmp_path) as made:
         put_new_tables(tmp_path / "plan.db")
-        tasks = {key: one for key, one in TOY.tasks.items() if key != "join"}
-        with pytest.raises(StageFailed, match="no task 'join'"):
-            run(made, Workload(1, 0.0, 1), replace(TOY, tasks=tasks))
+        with pytest.raises(StageFailed, match="no task 'part/002'"):
+            run(made, Workload(1, 0.0, 1), without("part/002"))
+
+
+def test_a_stage_newer_than_the_recording_is_named_and_takes_no_time(tmp_path: Path) -> None:
+    with database_url("sqlite", tmp_path) as made:
+        put_new_tables(tmp_path / "plan.db")
+        found = run(made, Workload(1, 0.0, 1), without("confirm"))
+    assert found.unknown == {"confirm"}
+    assert found.end_s == pytest.approx(ALONE - CONFIRM)
 
 
 def test_a_recording_is_what_the_database_says(tmp_path: Path) -> None:
@@ -122,7 +139,7 @@ def test_a_recording_is_what_the_database_says(tmp_path: Path) -> None:
 
 
 def values(table: Table) -> dict[str, float]:
-    return {row.name: float(str(row.value)) for row in table.rows}
+    return {row.name: float(row.value) for row in table.rows if isinstance(row.value, int | float)}
 
 
 def test_the_sample_runs_from_its_recording(tmp_path: Path) -> None:
@@ -138,5 +155,7 @@ def test_the_sample_runs_from_its_recording(tmp_path: Path) -> None:
 @pytest.mark.deployment
 def test_a_real_run_of_two_workers_is_met(tmp_path: Path) -> None:
     found = values(command.calibration(tmp_path, "toy", 4))
-    assert abs(found["all of them: off by"]) < 15
-    assert abs(found["one of them, mean: off by"]) < 15
+    for what in ("the last end", "mean time of a job"):
+        assert abs(found[f"{what}, replayed: off by"]) < 15, found
+        # What one job took says less about others: tests share the cores with whatever else runs.
+        assert 0.3 < found[f"{what}, predicted"] / found[f"{what}, real"] < 3.0, found

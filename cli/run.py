@@ -10,9 +10,9 @@ from cli import exits, parameters, progress, report
 from cli.recordings import recordings_of
 from cli.terminal import say
 from core.errors import BadInput
-from core.graph import STAGES
 from core.intake import check_input
 from core.settings import Settings
+from core.stage_specs import STAGES
 from core.states import RunState
 from core.videos import Recording
 from worker.events import Outcome

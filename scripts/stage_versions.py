@@ -5,7 +5,7 @@ taken for new ones: right when results are the same, wrong otherwise, and nobody
 kept beside the version in ``tests/data/stage_versions.json``, and a test compares. The code of a stage is the syntax
 tree of its module and of all modules of `core` that it imports, without documentation and annotations.
 
-    make versions                                     after raising versions in core/graph.py
+    make versions                                     after raising versions in core/stage_specs.py
     make versions SAME="sample, draft: no difference"  the results are the same, and how that was compared
 """
 
@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from core.graph import STAGES
+from core.stage_specs import STAGES
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "tests" / "data" / "stage_versions.json"
@@ -39,7 +39,7 @@ def main() -> None:
     if unsaid and not same:
         raise SystemExit(
             f"code changed without a new version: {', '.join(unsaid)}\n"
-            'raise the versions in core/graph.py, or: make versions SAME="how results were compared"'
+            'raise the versions in core/stage_specs.py, or: make versions SAME="how results were compared"'
         )
     entries = {name: {**entry, **_word(entry, known.get(name), same)} for name, entry in current().items()}
     FILE.write_text(json.dumps(entries, indent=1) + "\n", encoding="utf-8")

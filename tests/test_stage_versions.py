@@ -6,12 +6,12 @@ import ast
 
 import pytest
 
-from core.graph import STAGES
+from core.stage_specs import STAGES
 from scripts import stage_versions as versions
 
 
 def test_code_and_versions_are_those_that_are_recorded() -> None:
-    """After a change: raise the version in core/graph.py or have compared results, then `make versions`."""
+    """After a change: raise the version in core/stage_specs.py or have compared results, then `make versions`."""
     recorded = versions.recorded()
     now = versions.current()
     assert list(recorded) == list(now)

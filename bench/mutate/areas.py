@@ -47,6 +47,7 @@ AREAS: Mapping[str, Area] = {
     "plan": Area(
         (
             "core/graph.py",
+            "core/stage_specs.py",
             "store/plan.py",
             "store/leasing.py",
             "store/advance.py",

@@ -7,9 +7,10 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-from core.graph import StageSpec, TaskSpec
+from core.graph import TaskSpec
 from core.settings import Settings
 from core.stage import Facts, StageResult, StageTask
+from core.stage_specs import StageSpec
 from core.task_key import chunk_key
 from store.graph import Graph
 

@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Sequence
 
 from core.flags import Flag, Severity
-from core.graph import STAGES
 from core.json_files import JsonObject
 from core.report.record import RunRecord, TaskRecord
 from core.scene.defect import DefectRecord, least_defects
 from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
+from core.stage_specs import STAGES
 from core.states import RunState, TaskState
 from core.task_key import key_of, piece_of
 

@@ -7,13 +7,13 @@ from typing import Any
 
 from core.fingerprint import digest_of
 from core.flags import Verdict
-from core.graph import STAGES
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.scene.defect import DefectRecord, EventRow, least_defects
 from core.scene.detection import DetectionRow, Outcome
 from core.scene.size import scale_fields
+from core.stage_specs import STAGES
 from core.states import StageState, TaskState
 
 

@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 
 from core.errors import StageFailed
-from core.graph import STAGES, expand
+from core.graph import expand
 from core.settings import make_settings
 from core.stage import Facts, StageTask
+from core.stage_specs import STAGES
 from core.task_key import piece_of, stage_of
 
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}

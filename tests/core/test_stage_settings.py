@@ -8,9 +8,9 @@ from functools import cache
 
 import pytest
 
-from core.graph import STAGES
 from core.settings import Settings, declared_values, make_settings, only_declared
 from core.settings.base import Group, UndeclaredOption
+from core.stage_specs import STAGES
 from scripts.stage_versions import modules_of, tree_of
 
 GROUPS: dict[str, type[Group]] = {

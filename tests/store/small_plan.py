@@ -10,9 +10,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from core.fingerprint import digest_of
-from core.graph import StageSpec, TaskSpec
+from core.graph import TaskSpec
 from core.settings import Settings
 from core.stage import Facts
+from core.stage_specs import StageSpec
 from store.graph import Graph
 from store.records import InputFiles, Lease, Result
 

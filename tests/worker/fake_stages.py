@@ -21,9 +21,10 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
-from core.graph import StageSpec, TaskSpec
+from core.graph import TaskSpec
 from core.settings import Settings
 from core.stage import Facts, StageResult, StageTask
+from core.stage_specs import StageSpec
 from store.graph import Graph
 
 

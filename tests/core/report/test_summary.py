@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from core.graph import STAGES
 from core.report.build import build_report
 from core.report.summary import run_fingerprint, stage_state
 from core.settings import make_settings
+from core.stage_specs import STAGES
 from core.states import TaskState
 from tests.core.making_record import failed_record, full_record
 

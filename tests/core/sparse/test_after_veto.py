@@ -12,12 +12,13 @@ import pytest
 
 from core.errors import NoReconstruction
 from core.features.io import write_features
-from core.graph import PERSPECTIVE, STAGES
+from core.graph import PERSPECTIVE
 from core.io.frames import write_frames
 from core.scene.case import GRAPHS
 from core.scene.frame import Crop
 from core.settings import make_settings, only_declared
 from core.stage import Facts, StageResult, StageTask
+from core.stage_specs import STAGES
 from core.stages import focal, perspective, prune, reduce_parts, reduce_perspective, reverify, section
 from core.task_key import stage_of
 from core.verification import CameraFields, read_camera

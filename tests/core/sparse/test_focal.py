@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from core.features.io import FrameFeatures, write_features
-from core.graph import STAGES
 from core.io.frames import write_frames
 from core.matching.keyframes import Keyframes, write_keyframes
 from core.scene.frame import Crop, Frame, Role, RunFrames
@@ -18,6 +17,7 @@ from core.sparse import focal as search
 from core.sparse.focal import GAPS, SpanFocal, choose_spans, find_focal, joined
 from core.sparse.lens import fov_from_focal, start_lens
 from core.stage import StageTask
+from core.stage_specs import STAGES
 from core.stages import focal
 from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, Scene, make_scene
 

@@ -195,10 +195,9 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: st
     if settings.model.further and "pieces" not in facts:
         return tasks
     n_pieces = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
-    timelines = ["timeline"]
+    timelines = [key_of("timeline", piece) for piece in range(n_pieces + 1)]
     for piece in range(1, n_pieces + 1):
-        tasks += _of_piece(piece, timelines, graph)
-        timelines.append(key_of("timeline", piece))
+        tasks += _of_piece(piece, timelines[:piece], graph)
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
 

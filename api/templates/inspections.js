@@ -150,9 +150,11 @@ function acts(one) {
   };
   const own = `v1/inspections/${one.id}`;
   if (!ACTIVE.includes(one.state) && verdicts.has(`${one.id} ${one.attempt}`)) {
-    const link = made("a", "View", { href: `${own}/viewer/index.html`, ariaLabel: `View ${name}` });
-    link.dataset.name = `${one.id} View`;
-    box.append(link);
+    for (const [text, file] of [["View", "viewer/index.html"], ["Report", "report.pdf"]]) {
+      const link = made("a", text, { href: `${own}/${file}`, ariaLabel: `${text} ${name}` });
+      link.dataset.name = `${one.id} ${text}`;
+      box.append(link);
+    }
   }
   if (one.cancellable) button("Cancel", `${own}/cancel`, "POST");
   if (!ACTIVE.includes(one.state)) button("Retry", `${own}/retry`, "POST");

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 from core.report.csv_form import unescaped
+from core.review.tables import REVIEW_COLUMNS
 from store.account_models import Scope
 from tests.api.conftest import Backend, client_of
 from tests.api.test_results import ROWS
@@ -190,6 +192,11 @@ def test_a_review_of_another_attempt_is_kept_as_unattached(client: TestClient, p
     folded = client.get(f"{path}/reviewed").json()
     assert folded["findings"][0]["review"]["notes"] == []
     assert folded["unattached"][0]["review"]["notes"][0]["text"] == "kept"
+
+
+def test_the_guide_names_the_columns() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "api.md").read_text(encoding="utf-8")
+    assert [name for name in REVIEW_COLUMNS if f"`{name}`" not in text] == []
 
 
 def test_the_resource_leads_to_them(client: TestClient, path: str) -> None:

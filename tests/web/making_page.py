@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -154,7 +155,7 @@ def _rows() -> list[DetectionRow]:
 
 def _on(number: int, frame: int, place: tuple[float, float, float], finding: int, label: str) -> DetectionRow:
     row = mapped_row(plates.detection(number, place, frame, label=label), frame, place, 5)
-    return DetectionRow(**{**row.to_dict(), "defect_id": finding, "confidence": 0.8})
+    return replace(row, defect_id=finding, confidence=0.8)
 
 
 def _pictures(page: Path, mesh: Mesh) -> Pictures:

@@ -188,7 +188,7 @@ def test_an_inspection_is_cancelled_tried_again_and_deleted(deployed: Deployed, 
 
 def test_an_upload_that_is_cut_off_goes_on(deployed: Deployed, look: Callable[[str], Opened]) -> None:
     page = look(f"{deployed.address}/").page
-    cut = []
+    cut: list[str] = []
 
     def once(route: Any) -> None:
         if route.request.method == "PATCH" and not cut:

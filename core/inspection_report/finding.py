@@ -58,10 +58,11 @@ def _place(record: JsonObject, model: int, row: JsonObject | None) -> JsonObject
     blade, zero = record.get("blade"), (row or {}).get("zero_blade")
     place: JsonObject = {"blade": blade, "relative": blade is not None and zero is None}
     for name in ("side", "span", "chord", "edge_distance", "root_distance"):
-        value = record.get(name, known.get(name))
+        origin = known if record.get(name) in _NO_PART else record
+        value = origin.get(name)
         place[name] = None if value in _NO_PART else value
         if name != "side":
-            place[f"{name}_sigma"] = record.get(f"{name}_sigma", known.get(f"{name}_sigma"))
+            place[f"{name}_sigma"] = origin.get(f"{name}_sigma")
     scale = _scale_unit(record)
     shares = [_share(place, "span", "of the span seen, from the root"), _share(place, "chord", "of the chord")]
     lengths = [

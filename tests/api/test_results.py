@@ -83,7 +83,7 @@ ROWS: dict[str, Any] = {
     ],
 }
 for _event in ROWS["events"]:
-    _event.update({"n_detections": 2, "n_frames": 2, "video": 0})
+    _event.update({"n_detections": 2, "n_frames": 2, "video": 0, "blade": None})
     _event.update(dict.fromkeys(("x", "y", "z", "radius", "confidence")))
 
 

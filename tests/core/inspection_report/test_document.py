@@ -67,6 +67,7 @@ def test_columns_of_the_tables_count_before_what_the_row_says(tmp_path: Path) ->
 def test_what_was_not_seen_of_each_blade_is_said_and_counted(tmp_path: Path) -> None:
     folder = changed(tmp_path / "result", defects=lambda defects: defects[0].update(blade="2"))
     write_json(folder / "row.json", ROW)
+    (folder / "models/1/row.json").unlink()
     document = document_of(folder)
     first, second = document["coverage"]
     assert [(one["blade"], one["findings"]) for one in first["blades"]] == [("1", 0), ("2", 1)]

@@ -21,9 +21,10 @@ COLUMNS = {
     "mean_reprojection_error_px median_reprojection_error_px seconds start_mode selected vetoed",
     "mapping/detections.csv": "id key time_s label score box_x1 box_y1 box_x2 box_y2 frame_index outcome reason rung "
     "support_points x y z confidence blade defect_id model video "
-    "length length_sigma width width_sigma area area_sigma length_unit size_from",
+    "length length_sigma width width_sigma area area_sigma length_unit size_from "
+    "side span span_sigma chord chord_sigma edge_distance edge_distance_sigma root_distance root_distance_sigma",
     "mapping/timeline.csv": "event_id defect_id label start_s end_s n_detections n_frames x y z radius confidence "
-    "video",
+    "video blade",
 }
 RECORDS = {"full": full_record(), "failed": failed_record(), "thesis": full_record("thesis")}
 

@@ -105,4 +105,4 @@ def test_without_a_model_the_run_is_refused_for_its_own_reasons() -> None:
 
 
 def test_the_stages_after_the_model() -> None:
-    assert {"pieces", *ORDER, "viewer", "depth", "geometric"} == AFTER_MODEL
+    assert {"pieces", *ORDER, "viewer", "row", "blades", "depth", "geometric"} == AFTER_MODEL

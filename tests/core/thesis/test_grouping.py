@@ -21,7 +21,7 @@ CLUSTERS = cluster_detections(ROWS, 1.0)
 
 
 def test_columns_are_the_contract() -> None:
-    expected = "event_id defect_id label start_s end_s n_detections n_frames x y z radius confidence video"
+    expected = "event_id defect_id label start_s end_s n_detections n_frames x y z radius confidence video blade"
     assert " ".join(TIMELINE_COLUMNS) == expected
 
 

@@ -62,18 +62,24 @@ function compass(view: View3D, height: number): SVGElement[] {
   const row = visibleRow(data.row, view.surface.center);
   if (row) arrows.push(["tip", row.tip], ["root", [-row.tip[0], -row.tip[1], -row.tip[2]]]);
   if (!arrows.length) return [];
-  const drawn = arrows.flatMap(([name, d]) => {
+  const words: { readonly text: SVGElement; readonly dx: number; readonly dy: number }[] = [];
+  const heads = arrows.map(([name, d]) => {
     const [right, up] = view.onScreen(d);
     const [dx, dy] = [17 * right, -17 * up];
-    const text = document.createElementNS(SVG, "text");
-    const flat = Math.hypot(dx, dy) || 1;
-    text.setAttribute("x", String(x + dx + (9 * dx) / flat));
-    text.setAttribute("y", String(y + dy + (8 * dy) / flat + 4));
-    text.setAttribute("class", "way");
-    text.textContent = name;
-    const head = `M${x} ${y}l${dx} ${dy}m${-0.3 * dx - 0.2 * dy} ${-0.3 * dy + 0.2 * dx}l${0.3 * dx + 0.2 * dy} ${0.3 * dy - 0.2 * dx}l${-0.3 * dx + 0.2 * dy} ${-0.3 * dy - 0.2 * dx}`;
-    return [path(head, "way"), text];
+    const beside = words.find((word) => Math.hypot(word.dx - dx, word.dy - dy) < 12); // they would lie on each other
+    if (beside) beside.text.textContent += `, ${name}`;
+    else {
+      const text = document.createElementNS(SVG, "text");
+      const flat = Math.hypot(dx, dy) || 1;
+      text.setAttribute("x", String(x + dx + (9 * dx) / flat));
+      text.setAttribute("y", String(y + dy + (8 * dy) / flat + 4));
+      text.setAttribute("class", "way");
+      text.textContent = name;
+      words.push({ text, dx, dy });
+    }
+    return path(`M${x} ${y}l${dx} ${dy}m${-0.3 * dx - 0.2 * dy} ${-0.3 * dy + 0.2 * dx}l${0.3 * dx + 0.2 * dy} ${0.3 * dy - 0.2 * dx}l${-0.3 * dx + 0.2 * dy} ${-0.3 * dy - 0.2 * dx}`, "way");
   });
+  const drawn = [...heads, ...words.map((word) => word.text)];
   return [path(`M${x - 33} ${y}a33 33 0 1 0 66 0a33 33 0 1 0-66 0`, "dial"), ...drawn];
 }
 

@@ -28,8 +28,7 @@ from store.keys import Keys
 from store.settings import DeploymentSettings, deployment_settings
 from worker.broker import TaskQueue
 from worker.cleaner import UploadCleaner
-from worker.limits import say_confinement
-from worker.loop import PollingRunners, WorkerService
+from worker.loop import PollingRunners, WorkerService, say_confinement
 from worker.periodic import Periodic
 
 _log = json_log.logger("bladeatlas.server")

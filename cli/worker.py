@@ -13,7 +13,7 @@ from store.factory import open_database
 from store.monitoring import WorkerRegistry
 from store.settings import DeploymentSettings, deployment_settings
 from worker.broker import run_worker
-from worker.limits import say_confinement
+from worker.loop import say_confinement
 
 _LATE = 3
 """Heartbeats after which a worker counts as gone."""

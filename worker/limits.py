@@ -4,24 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from core.confinement import NetworkGuard, ProcessLimits, hide_memory, possible_guard
+from core.confinement import ProcessLimits
 from core.states import Queue
-from store.json_log import logger
-from store.settings import DeploymentSettings
 
-_log = logger("bladeatlas.children")
-
-
-def say_confinement() -> None:
-    """Hide this process's memory from children, and write down what keeps them from the network."""
-    hide_memory()
-    guard = possible_guard()
-    if guard == NetworkGuard.NONE:
-        meaning = "processes that read uploaded files can reach the network: allow seccomp filters or user namespaces"
-        _log.warning("children_not_confined", network=guard, meaning=meaning)
-    else:
-        _log.info("children_confined", network=guard)
+if TYPE_CHECKING:  # every process of a task loads this module, and none of them the database
+    from store.settings import DeploymentSettings
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
 
+from core.confinement import NetworkGuard, hide_memory, possible_guard
 from core.errors import BladeAtlasError
 from core.states import AttemptOutcome, Queue
 from store.db import Database
@@ -41,6 +42,7 @@ from worker.webhooks import webhook_sender
 
 _task_log = logger("bladeatlas.tasks")
 _runners_log = logger("bladeatlas.runners")
+_children_log = logger("bladeatlas.children")
 T = TypeVar("T")
 _TICK_S = 0.5
 _AFTER_FAILURE_S = 5.0
@@ -359,3 +361,14 @@ class PollingRunners:
             if self._current.failure is not None:
                 _runners_log.error("runners_stopped", reason=str(self._current.failure))
                 self._stopped.wait(_AFTER_FAILURE_S)
+
+
+def say_confinement() -> None:
+    """Hide this process's memory from children, and write down what keeps them from the network."""
+    hide_memory()
+    guard = possible_guard()
+    if guard == NetworkGuard.NONE:
+        meaning = "processes that read uploaded files can reach the network: allow seccomp filters or user namespaces"
+        _children_log.warning("children_not_confined", network=guard, meaning=meaning)
+    else:
+        _children_log.info("children_confined", network=guard)

@@ -153,6 +153,7 @@ def test_the_sample_runs_from_its_recording(tmp_path: Path) -> None:
 
 
 @pytest.mark.deployment
+@pytest.mark.long
 def test_a_real_run_of_two_workers_is_met(tmp_path: Path) -> None:
     found = values(command.calibration(tmp_path, "toy", 4))
     for what in ("the last end", "mean time of a job"):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -47,3 +49,10 @@ def test_errors_cross_the_border_by_what_they_mean(
 def test_any_error_on_a_full_disk_is_the_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("worker.task.disk_is_full", lambda _folder: True)
     assert describe(StageFailed("could not read model"), "join", tmp_path, _LIMITS)["code"] == "disk_full"
+
+
+def test_the_process_of_a_task_starts_without_database_and_log() -> None:
+    """A run has hundreds of them: half a second of each went to what only the runner needs."""
+    asked = "import sys, worker.task; print([m for m in ('sqlalchemy', 'structlog', 'celery') if m in sys.modules])"
+    said = subprocess.run([sys.executable, "-c", asked], check=True, capture_output=True, text=True)
+    assert said.stdout.strip() == "[]"

@@ -40,9 +40,9 @@ check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
 
 test: lint docs ## everything, with whole deployments and the runs on the sample
 	$(UNIT)
-	$(BIN)/pytest -m "(sample or deployment) and not long"
+	PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -m "(sample or deployment) and not long"
 
-test-long: setup ## the walk-through on real jobs and the kill test on the sample (a quarter of an hour)
+test-long: setup ## the walk-through on real jobs, faults at toy jobs, a simulated queue, the kill test on the sample (a quarter of an hour)
 	$(BIN)/pytest -m long
 
 bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs

@@ -17,6 +17,7 @@ TRANSFERS = {"kill_api_during_upload": 2, "kill_api_during_download": 2}
 
 
 @pytest.mark.deployment
+@pytest.mark.long
 def test_every_kind_of_fault_costs_nothing(tmp_path: Path) -> None:
     if shutil.which("redis-server") is None or not list(Path("/usr/lib/postgresql").glob("*/bin/initdb")):
         pytest.skip("the soak starts servers of its own, and their programs are not installed")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,13 @@ def write_json(path: Path, value: object) -> None:
     text = json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def replace_file(path: Path, write: Callable[[Path], object]) -> None:
+    """Have a file of a result written beside its place and put there at once: who reads it sees the old or the new."""
+    beside = path.with_name(f".{path.name}.new")
+    write(beside)
+    beside.replace(path)
 
 
 def read_json(path: Path) -> Any:

@@ -118,6 +118,11 @@ def model_folder(folder: Path, model: int) -> Path:
     return folder / "models" / str(model) if model else folder
 
 
+def path_of_model(model: int, path: str) -> str:
+    """Published path of a file of a model: of the first model that of the result's own file."""
+    return f"models/{model}/{path}" if model else path
+
+
 def model_numbers(folder: Path) -> list[int]:
     """Numbers of the models of a result, from 0, rising."""
     return [0, *sorted(int(path.name) for path in (folder / "models").glob("*") if path.name.isdecimal())]

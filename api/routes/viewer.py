@@ -13,7 +13,7 @@ from api.negotiation import Span, accepts_gzip, matches
 from api.problems import not_found, responses
 from api.routes.artifacts import find_file, stream_bytes
 from api.state import state_of
-from core.outputs import VIEWER
+from core.outputs import VIEWER, path_of_model
 from core.viewer.policy import POLICY
 from store.files import ArtifactStore
 from store.publishing import ArtifactView, compressed_key
@@ -66,7 +66,7 @@ def page_of_model(
     accept_encoding: _Encoding = None,
 ) -> Response:
     """A file of the page of a further model; its pictures are those of the first model's page."""
-    name = f"models/{model}/{VIEWER}/{path}"
+    name = path_of_model(model, f"{VIEWER}/{path}")
     return _file(request, caller.owner, inspection_id, name, if_none_match, accept_encoding)
 
 

@@ -16,6 +16,7 @@ from core.inspection_report.source import ReportSource
 from core.inspection_report.typeset import typeset
 from core.json_files import JsonObject
 from core.report.csv_form import csv_line
+from core.scene.on_row import ROW_COLUMNS
 
 STYLE_SHEET = "report.css"
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
@@ -125,14 +126,13 @@ def _human_cells(human: JsonObject) -> JsonObject:
 
 def _cells(one: JsonObject) -> JsonObject:
     place = one["place"]
-    measured = ("side", "span", "span_sigma", "chord", "chord_sigma", "root_distance", "root_distance_sigma")
     return {
         "finding": one["name"],
         "model": one["model"],
         "label": one["label"],
         "blade": place["blade"],
         "blade_is_relative": place["relative"],
-        **{name: place[name] for name in (*measured, "edge_distance", "edge_distance_sigma")},
+        **{name: place[name] for name in ROW_COLUMNS},
         "size": one["size"]["value"],
         "size_sigma": one["size"]["sigma"],
         "size_unit": one["size"]["unit"],

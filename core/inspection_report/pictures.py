@@ -9,9 +9,9 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Collection, Iterable, Sequence
 
-from core.inspection_report.source import ReportSource, below
+from core.inspection_report.source import ReportSource
 from core.json_files import JsonObject
-from core.outputs import VIEWER
+from core.outputs import VIEWER, path_of_model
 
 CLOSE_UP = 4.0
 """The close-up's height over the longer side of the finding's box."""
@@ -118,4 +118,4 @@ def _around(boxes: Sequence[Box]) -> Box:
 
 def _published(address: str, model: int) -> str:
     """Published path of a picture by its address relative to the page of a model."""
-    return posixpath.normpath(posixpath.join(below(model, VIEWER), address))
+    return posixpath.normpath(posixpath.join(path_of_model(model, VIEWER), address))

@@ -9,7 +9,18 @@ from pathlib import Path
 
 from core.errors import BadInput
 from core.json_files import JsonObject
-from core.outputs import DEFECTS, DETECTIONS, DOCUMENT, QUALITY, ROW, SUMMARY, TIMELINE, VIEWER, is_of_page
+from core.outputs import (
+    DEFECTS,
+    DETECTIONS,
+    DOCUMENT,
+    QUALITY,
+    ROW,
+    SUMMARY,
+    TIMELINE,
+    VIEWER,
+    is_of_page,
+    path_of_model,
+)
 
 ReadFile = Callable[[str], bytes | None]
 """Of a published path, the bytes of the file; None where there is none."""
@@ -33,7 +44,7 @@ class ReportSource:
     @property
     def models(self) -> list[int]:
         """Numbers of the models, rising; 0 also where there is none."""
-        return sorted({0, *(int(one["model"]) for one in self.quality.get("models") or ())})
+        return _models(self.quality)
 
     def picture(self, path: str) -> bytes | None:
         """A picture of a page; None where it is not there.
@@ -66,7 +77,7 @@ def read_source(read: ReadFile) -> ReportSource:
     summary, quality = _object(read, SUMMARY), _object(read, QUALITY)
     if summary is None or quality is None:
         raise BadInput(f"there is no {QUALITY if summary else SUMMARY}: is it a finished result?", where="RESULT")
-    models = sorted({0, *(int(one["model"]) for one in quality.get("models") or ())})
+    models = _models(quality)
     return ReportSource(
         read=read,
         summary=summary,
@@ -79,13 +90,12 @@ def read_source(read: ReadFile) -> ReportSource:
     )
 
 
-def below(model: int, path: str) -> str:
-    """Published path of a file of a model."""
-    return f"models/{model}/{path}" if model else path
+def _models(quality: JsonObject) -> list[int]:
+    return sorted({0, *(int(one["model"]) for one in quality.get("models") or ())})
 
 
 def _by_model(read: ReadFile, models: Sequence[int], path: str) -> dict[int, JsonObject]:
-    found = {model: _object(read, below(model, path)) for model in models}
+    found = {model: _object(read, path_of_model(model, path)) for model in models}
     return {model: value for model, value in found.items() if value is not None}
 
 

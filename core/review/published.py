@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import BadInput
-from core.json_files import JsonObject, read_json, write_json
+from core.json_files import JsonObject, read_json, replace_file, write_json
 from core.outputs import DEFECTS
 from core.review.checks import bad, index, require_member
 from core.review.record import ReviewRecord
@@ -126,10 +126,8 @@ def apply_records(folder: Path, records: Sequence[ReviewRecord]) -> Applied:
     if len(together) > MAX_RECORDS:
         raise BadInput(f"a result has at most {MAX_RECORDS} review records", code="bad_review", where=REVIEW)
     if len(together) > len(kept):
-        made = folder / f".{REVIEW}.new"
         try:
-            write_json(made, review_document(together))
-            made.replace(folder / REVIEW)
+            replace_file(folder / REVIEW, lambda beside: write_json(beside, review_document(together)))
         except OSError as error:
             raise BadInput(f"{REVIEW} cannot be written: {error.strerror}", where=REVIEW) from None
     return Applied(len(together) - len(kept), len({one.id for one in records}) - (len(together) - len(kept)))

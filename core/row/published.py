@@ -5,14 +5,13 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import BadInput
 from core.io.sparse import open_model
-from core.json_files import JsonObject, read_json, write_json
+from core.json_files import JsonObject, read_json, replace_file, write_json
 from core.mapping.scene import oriented
 from core.outputs import (
     CONFIDENCE,
@@ -94,15 +93,15 @@ def write_row(folder: Path, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
     _write(folder / TIMELINE, _changed(events, events_on_row(visits, defects), ("blade",)))
     if records:
         changed = _changed(records, defects)
-        _replace(folder / DEFECTS, lambda path: write_json(path, changed))
+        replace_file(folder / DEFECTS, lambda path: write_json(path, changed))
     for number in sorted(found, reverse=True):
         _write_row(model_folder(folder, number), documents[number])
     return found[0]
 
 
 def _write_row(folder: Path, document: JsonObject) -> None:
-    _replace(folder / ROW_MAP, lambda path: path.write_text(row_map(document), encoding="utf-8"))
-    _replace(folder / ROW, lambda path: write_json(path, document))
+    replace_file(folder / ROW_MAP, lambda path: path.write_text(row_map(document), encoding="utf-8"))
+    replace_file(folder / ROW, lambda path: write_json(path, document))
 
 
 def _row_of(folder: Path, model: int, scale: Scale | None, told: RowSettings) -> RowOfModel | NoRow:
@@ -117,7 +116,7 @@ def _row_of(folder: Path, model: int, scale: Scale | None, told: RowSettings) ->
     if (folder / DEFECT_SURFACE).is_file():
         colored = read_mesh(folder / DEFECT_SURFACE)
         extra = {**colored.extra, "blade": blades_of_vertices(row, colored)}
-        _replace(
+        replace_file(
             folder / DEFECT_SURFACE, lambda path: write_mesh(path, replace(colored, extra=extra), colored.comments)
         )
     return RowOfModel(row, mesh, views, model, scale)
@@ -147,8 +146,8 @@ def _changed(
 def _write(path: Path, rows: Rows) -> None:
     """A table in both its forms; one without rows stays."""
     if rows:
-        _replace(path, lambda beside: write_json(beside, rows))
-        _replace(path.with_suffix(".csv"), lambda beside: write_csv(beside, list(rows[0]), rows))
+        replace_file(path, lambda beside: write_json(beside, rows))
+        replace_file(path.with_suffix(".csv"), lambda beside: write_csv(beside, list(rows[0]), rows))
 
 
 def _read(path: Path) -> Rows:
@@ -157,10 +156,3 @@ def _read(path: Path) -> Rows:
     except FileNotFoundError:
         return []
     return rows
-
-
-def _replace(path: Path, write: Callable[[Path], object]) -> None:
-    """Write beside the file and put it in its place at once."""
-    beside = path.with_name(f".{path.name}.new")
-    write(beside)
-    os.replace(beside, path)

@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from core.flags import Verdict
 from core.json_files import JsonObject
-from core.outputs import PORTRAITS, SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE, portrait_name
+from core.outputs import PORTRAITS, SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE, path_of_model, portrait_name
 from core.report.build import Report
 from core.report.record import Item
 from core.scene.defect import MODEL_UNIT, DefectRecord
@@ -75,7 +75,7 @@ class ViewerSource:
 def page_of(model: int, seen_from: int) -> str:
     """Address of the page of a model relative to that of another."""
     up = "../../../" if seen_from else "../"
-    return f"{up}models/{model}/{VIEWER_PAGE}" if model else f"{up}{VIEWER_PAGE}"
+    return up + path_of_model(model, VIEWER_PAGE)
 
 
 def viewer_document(source: ViewerSource) -> JsonObject:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import socket
 import threading
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -32,6 +31,7 @@ from store.settings import DeploymentSettings
 from store.tables import replace_rows
 from tests.databases import put_new_tables
 from tests.store.small_plan import GRAPH, result_for
+from tests.waiting import wait_for
 
 ROOT = Path(__file__).parents[2]
 VIDEO = ROOT / "samples" / "turbine.mp4"
@@ -167,10 +167,8 @@ class Server(uvicorn.Server):
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "it did not happen in time"
-        time.sleep(0.02)
+    """`wait_for`, with the patience that an answer of the API needs."""
+    wait_for(condition, seconds)
 
 
 def free_port() -> int:

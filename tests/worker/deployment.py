@@ -21,8 +21,8 @@ from store.inspections import Inspections
 from store.models import Artifact, Attempt, Inspection
 from store.records import InputFiles
 from tests.signals import heed_interrupts
+from tests.waiting import wait_for
 from tests.worker.fake_stages import GRAPH, SMALL, journal
-from tests.worker.waiting import wait_for
 
 ROOT = Path(__file__).resolve().parents[2]
 FAST = {

@@ -19,9 +19,9 @@ from store.monitoring import WorkerRegistry
 from store.plan import Plan
 from tests.databases import database
 from tests.store.object_store import new_bucket, options
+from tests.waiting import wait_for
 from tests.worker.deployment import Deployment
 from tests.worker.fake_stages import GRAPH
-from tests.worker.waiting import wait_for
 from worker.broker import TaskQueue
 
 ALL = ["join", "last", "part/000", "part/001", "split"]

@@ -21,9 +21,9 @@ from store.inspections import Inspections
 from store.models import Attempt
 from store.plan import Plan
 from tests.signals import heed_interrupts
+from tests.waiting import wait_for
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, journal
-from tests.worker.waiting import wait_for
 
 pytestmark = pytest.mark.deployment
 ROOT = Path(__file__).resolve().parents[2]

@@ -28,9 +28,9 @@ from store.monitoring import WorkerRegistry
 from store.records import InputFiles
 from tests.conftest import service_url
 from tests.databases import database
+from tests.waiting import wait_for
 from tests.worker.deployment import Deployment
 from tests.worker.fake_stages import GRAPH, SMALL
-from tests.worker.waiting import wait_for
 from worker.broker import TaskQueue
 
 BROKERS = [pytest.param(name, marks=pytest.mark.service(name)) for name in ("redis", "rabbitmq")]

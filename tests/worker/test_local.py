@@ -19,9 +19,9 @@ from store.models import Attempt
 from store.plan import Plan
 from store.records import InputFiles, Lease
 from tests.databases import BOTH, database
+from tests.waiting import wait_for
 from tests.worker.conftest import Workplace
 from tests.worker.fake_stages import GRAPH, SMALL
-from tests.worker.waiting import wait_for
 from worker.logs import TaskLogs
 from worker.loop import LocalRunners
 from worker.results import ResultFolders

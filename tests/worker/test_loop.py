@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-from tests.worker.waiting import wait_for
+from tests.waiting import wait_for
 from worker.loop import ConcurrencyLimit
 
 

@@ -19,9 +19,9 @@ import pytest
 
 from store.db import open_sqlite
 from store.keys import Keys
+from tests.waiting import wait_for
 from tests.worker.deployment import ROOT, Deployment
 from tests.worker.test_serve import _answers, free_port
-from tests.worker.waiting import wait_for
 
 pytestmark = pytest.mark.deployment
 _NAME = "inspections.example.com"

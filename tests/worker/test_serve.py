@@ -15,9 +15,9 @@ import pytest
 from store.db import open_sqlite
 from store.keys import Keys
 from store.models import Inspection
+from tests.waiting import wait_for
 from tests.worker.deployment import Deployment
 from tests.worker.disks import fill, mounted
-from tests.worker.waiting import wait_for
 
 pytestmark = pytest.mark.deployment
 ALL = ["join", "last", "part/000", "part/001", "split"]

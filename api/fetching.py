@@ -87,7 +87,7 @@ class Fetches:
                 self.downloads.hosts.require(one.url)  # in vain nobody's place is taken
             except BadInput as error:
                 raise _refused(one, error) from None
-        self._forget_old()
+        self._delete_old()
         name = _name(owner, wanted)
         fetch = self._under_way.get(name)
         if fetch is None:
@@ -110,8 +110,8 @@ class Fetches:
         if fetch is not None:
             await run_in_threadpool(partial(self._remove, fetch.task.result()))
 
-    def _forget_old(self) -> None:
-        """Let go of files that were not used soon: at their URL there may be others by now."""
+    def _delete_old(self) -> None:
+        """Drop files that were not used soon: at their URL there may be others by now."""
         for name, fetch in list(self._under_way.items()):
             if fetch.task.done() and self.clock() - fetch.asked_at > _KEPT_S:
                 del self._under_way[name]  # its uploads end by their own time

@@ -21,7 +21,7 @@ from store.settings import DeploymentSettings
 
 _ENTRY = "core.intake"
 _SIDE_BY_SIDE = 2
-_PATIENCE = 3.0
+_TIMEOUT_FACTOR = 3.0
 """The limit is one of processor time; on the clock a busy machine may take so many times as long."""
 
 
@@ -78,7 +78,7 @@ class Prober:
             env=child_environment(threads=1),
         )
         try:
-            async with asyncio.timeout(self.settings.probe_seconds * _PATIENCE):
+            async with asyncio.timeout(self.settings.probe_seconds * _TIMEOUT_FACTOR):
                 said, _ = await process.communicate(json.dumps(question).encode())
         except TimeoutError:
             # Its processor time was not used up: others had it, which is not the video's fault.

@@ -155,17 +155,17 @@ def cells(one: Judged) -> list[str]:
 
 
 def counts(judged: Iterable[Judged]) -> list[str]:
-    """Lines: right models that were doubted, wrong ones that were not, and what was refused."""
+    """Lines: right models that were called suspect, wrong ones that were not, and what was refused."""
     known = list(judged)
     given = [one for one in known if one.verdict != Verdict.REFUSED]
     right, wrong = [one for one in given if one.right], [one for one in given if one.right is False]
-    doubted = [one for one in right if one.verdict == Verdict.SUSPECT]
+    suspected = [one for one in right if one.verdict == Verdict.SUSPECT]
     trusted = [one for one in wrong if one.verdict == Verdict.OK]
     refused = [one for one in known if one.verdict == Verdict.REFUSED]
     needless = [one for one in refused if one.right]
-    share = f" ({100 * len(doubted) / len(right):.0f} %)" if right else ""
+    share = f" ({100 * len(suspected) / len(right):.0f} %)" if right else ""
     return [
-        f"right models: {len(right)}; called suspect: {len(doubted)}{share}{_names(doubted)}",
+        f"right models: {len(right)}; called suspect: {len(suspected)}{share}{_names(suspected)}",
         f"wrong models: {len(wrong)}; called ok: {len(trusted)}{_names(trusted)}",
         f"refused: {len(refused)}, of them hopeless {sum(one.hopeless for one in refused)}, "
         f"with a model that was right {len(needless)}{_names(needless)}",

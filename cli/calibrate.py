@@ -50,7 +50,7 @@ def _record(found: VideoCalibration) -> dict[str, object]:
         "covered": solution.covered,
         "reach": solution.reach,
         "fov_deg": list(solution.fov_deg),
-        "doubts": list(solution.doubts),
+        "doubts": list(solution.warnings),
     }
 
 
@@ -67,5 +67,5 @@ def _lines(found: VideoCalibration) -> list[str]:
         f"focal length: {lens.fx:.2f}, {lens.fy:.2f} px; principal point: {lens.cx:.2f}, {lens.cy:.2f} px",
         f"field of view: {fov} degrees",
         f"corners: in {solution.covered:.0%} of {cells}, out to {solution.reach:.0%} of the half diagonal",
-        *(f"warning: not to be trusted: {doubt}" for doubt in solution.doubts),
+        *(f"warning: not to be trusted: {warning}" for warning in solution.warnings),
     ]

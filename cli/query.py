@@ -74,16 +74,16 @@ def views(parsed: argparse.Namespace) -> int:
     place, model = _place(parsed.result, parsed.point, parsed.defect, parsed.model)
     result = Result(parsed.result, model)
     on = result.on_surface(place)
-    seeing = result.frames_seeing(place, parsed.video)
-    shown = seeing[: parsed.limit]
+    visible = result.visible_frames(place, parsed.video)
+    shown = visible[: parsed.limit]
     if parsed.json:
         rows = [one.to_dict() for one in shown]
-        say_json({"schema_version": 1, **on.to_dict(), "n_frames": len(seeing), "frames": rows}, indent=1)
+        say_json({"schema_version": 1, **on.to_dict(), "n_frames": len(visible), "frames": rows}, indent=1)
         return 0
     if on.distance > on.spacing:
         off = f"{on.distance:.5f} from the place asked for (the surface's points lie {on.spacing:.5f} apart)"
         say(f"the nearest point of the surface is {three(on.point)}: {off}")
-    say(f"{len(seeing)} frames see it" + (f"; the best {len(shown)}:" if len(shown) < len(seeing) else ""))
+    say(f"{len(visible)} frames see it" + (f"; the best {len(shown)}:" if len(shown) < len(visible) else ""))
     for one in shown:
         at = f"at {one.x:7.1f}, {one.y:7.1f} px"
         which = f"video {one.video}  " if result.n_videos > 1 else ""

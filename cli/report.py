@@ -55,8 +55,8 @@ def _funnel(quality: dict[str, Any]) -> list[str]:
     least = steps.pop("defects_at_least", None)
     if least not in (None, steps.get("defects")):
         steps["defects"] = f"{least} to {steps['defects']}"
-    doubted = steps.pop("unconfirmed", 0)
-    extra = {"mapped": beside, "defects": f" (and {doubted} detections that other frames deny)" if doubted else ""}
+    denied = steps.pop("unconfirmed", 0)
+    extra = {"mapped": beside, "defects": f" (and {denied} detections that other frames deny)" if denied else ""}
     texts = [f"{name.replace('_', ' ')} {value}{extra.get(name, '')}" for name, value in steps.items()]
     return ["", "  " + " -> ".join(texts)] if texts else []
 

@@ -146,5 +146,5 @@ def worst(flags: list[Flag]) -> Severity | None:
 
 
 def error_codes(checks: Iterable[Mapping[str, object]]) -> str:
-    """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is vetoed."""
+    """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is rejected."""
     return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == Severity.ERROR}))

@@ -23,7 +23,7 @@ ALL_VIEWS = 1_000_000
 
 
 PERSPECTIVE = LensModel.SIMPLE_RADIAL
-"""The perspective lens that is tried after a veto: one radial term, because little may be there to settle it."""
+"""The perspective lens tried when every model was rejected: one radial term, as little may be there to settle it."""
 BY_A_WRONG_LENS = frozenset({"bent_model", "not_static", "two_motions"})
 """Findings that a lens of the wrong kind leads to; without parallax or a join another lens finds none either."""
 
@@ -149,26 +149,26 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], front_end: S
 
 
 def _parts(intervals: Sequence[Sequence[int]], another_lens: bool) -> list[TaskSpec]:
-    """The parts left of a vetoed model, each mapped alone, and the choice; `another_lens` follows where none passes."""
+    """The parts of a rejected model, each mapped alone, and the choice; `another_lens` follows where none passes."""
     windows = [Window(CaseKind.SECTION, i, int(start), int(end)) for i, (start, end) in enumerate(intervals)]
     cases = [_case(window, ("prune",)) for window in windows]
     needs = ("annotations", "frames", "reduce_refine", *(one.key for one in cases))
     return [*cases, TaskSpec("reduce_parts", needs, {"another_lens": another_lens})]
 
 
-def _perspective(settings: Settings, vetoed: Facts, front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
-    """The lens sought anew as a perspective one, the graph verified by it, and the best vetoed window mapped so.
+def _perspective(settings: Settings, rejected: Facts, front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
+    """The lens sought anew as a perspective one, the graph verified by it, and the best rejected window mapped so.
 
     None where somebody said what the lens is, or where what is wrong is not the lens's doing.
     """
     starts = [task for task in front_end if task.stage == "focal"]
     told = settings.camera.model != LensModel.OPENCV_FISHEYE or "camera.model" in settings.overrides or not starts
-    if told or BY_A_WRONG_LENS.isdisjoint(vetoed["codes"].split(", ")):
+    if told or BY_A_WRONG_LENS.isdisjoint(rejected["codes"].split(", ")):
         return []
     model = {"model": str(PERSPECTIVE)}
     keys = [key_of("focal", part=f"{PERSPECTIVE}-{part_of(start.key)}") for start in starts]
     starts = [replace(one, key=key, args={**one.args, **model}) for one, key in zip(starts, keys, strict=True)]
-    case = _case(Window(CaseKind.PERSPECTIVE, 0, int(vetoed["start"]), int(vetoed["end"])), ("reverify",))
+    case = _case(Window(CaseKind.PERSPECTIVE, 0, int(rejected["start"]), int(rejected["end"])), ("reverify",))
     choice = TaskSpec("reduce_perspective", ("reduce_refine", "reduce_parts", case.key))
     return [*starts, TaskSpec("reverify", ("frames", "graph", "reduce_parts", *keys), model), case, choice]
 
@@ -194,23 +194,23 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: st
     tasks.append(TaskSpec("viewer", ("frames", "pictures", "extend", "mesh", "timeline")))
     if settings.model.further and "pieces" not in facts:
         return tasks
-    n_pieces = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
-    timelines = [key_of("timeline", piece) for piece in range(n_pieces + 1)]
-    for piece in range(1, n_pieces + 1):
-        tasks += _of_piece(piece, timelines[:piece], graph)
+    n_submodels = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
+    timelines = [key_of("timeline", submodel) for submodel in range(n_submodels + 1)]
+    for submodel in range(1, n_submodels + 1):
+        tasks += _of_submodel(submodel, timelines[:submodel], graph)
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
 
 
-def _of_piece(piece: int, timelines: Sequence[str], graph: str) -> list[TaskSpec]:
+def _of_submodel(submodel: int, timelines: Sequence[str], graph: str) -> list[TaskSpec]:
     """Everything from the final model on for a further model, one task per stage; failing ones are an outcome."""
 
     def key(stage: str) -> str:
-        return key_of(stage, piece)
+        return key_of(stage, submodel)
 
-    depth, geometric = chunk_key("depth", 0, piece), chunk_key("geometric", 0, piece)
-    whole = {"piece": piece, "start": 0, "end": ALL_VIEWS}
-    one = {"piece": piece}
+    depth, geometric = chunk_key("depth", 0, submodel), chunk_key("geometric", 0, submodel)
+    whole = {"piece": submodel, "start": 0, "end": ALL_VIEWS}
+    one = {"piece": submodel}
     shape = (key("extend"), key("mesh"))
     surface = (key("extend"), key("fuse"), key("mesh"))
     grouped = ("annotations", "frames", *surface, key("blades"), key("map_defects"), *timelines)

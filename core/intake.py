@@ -26,8 +26,8 @@ from core.roi import crop_of
 from core.settings import Settings
 from core.settings.groups import RoiSettings
 from core.video.decode import DecodedFrame, VideoReader
+from core.video.factory import open_video
 from core.video.limits import PIXELS_ONLY, VideoLimits
-from core.video.opening import open_video
 from core.video.orientation import square_width
 from core.video.picture_reader import PictureReader
 from core.videos import Recording, RecordingFields, naming_video, require_count, require_one_size

@@ -38,7 +38,7 @@ FAR_SHARE = 0.1
 
 
 @dataclass(frozen=True)
-class Shown:
+class SurfaceHit:
     """What a pixel shows. Without a point, `reason` says why: a code of the detections' table."""
 
     frame_index: int | None
@@ -60,7 +60,7 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Seeing:
+class VisibleFrame:
     """A frame that sees a point."""
 
     frame_index: int
@@ -136,7 +136,7 @@ class Result:
             raise BadInput(f"no frame of video {video} took part", where="--video")
         return int(min(own, key=lambda row: abs(row["time_s"] - time_s))["source_index"])
 
-    def point_at(self, source_index: int, x: float, y: float, video: int = 0) -> Shown:
+    def point_at(self, source_index: int, x: float, y: float, video: int = 0) -> SurfaceHit:
         """What a pixel of a source frame shows.
 
         Args:
@@ -158,23 +158,23 @@ class Result:
         here = (video, source_index)
         row = next((row for row in self._frames.values() if (row["video"], row["source_index"]) == here), None)
         if row is None:
-            return Shown(None, Reason.NO_REGISTERED_VIEW)
+            return SurfaceHit(None, Reason.NO_REGISTERED_VIEW)
         index, time_s = int(row["index"]), float(row["time_s"])
         view = self.views.row(index)
         if view is None:
-            return Shown(index, Reason.FRAME_NOT_REGISTERED, time_s)
+            return SurfaceHit(index, Reason.FRAME_NOT_REGISTERED, time_s)
         xy = np.array([[x - self._crop.x0, y - self._crop.y0]])
         if not (0 <= xy[0, 0] <= self._crop.width and 0 <= xy[0, 1] <= self._crop.height):
-            return Shown(index, Reason.OUTSIDE_ROI, time_s)
+            return SurfaceHit(index, Reason.OUTSIDE_ROI, time_s)
         ray = self.views.rays(xy, self.views.R[view])
         hits = self._surface.cast(self.views.centers[view][None], ray)
         if not hits.hit[0]:
-            return Shown(index, Reason.OFF_SURFACE, time_s)
+            return SurfaceHit(index, Reason.OFF_SURFACE, time_s)
         if hits.cosine[0] <= 0:
-            return Shown(index, Reason.OCCLUDED, time_s)
+            return SurfaceHit(index, Reason.OCCLUDED, time_s)
         point = self.views.centers[view] + hits.distance[0] * ray[0]
         face = int(hits.face[0])
-        return Shown(
+        return SurfaceHit(
             frame_index=index,
             time_s=time_s,
             point=_three(point),
@@ -185,7 +185,7 @@ class Result:
             defect_id=self._defect_of(face),
         )
 
-    def place_of_box(self, frame_index: int, box: Sequence[float]) -> Shown:
+    def place_of_box(self, frame_index: int, box: Sequence[float]) -> SurfaceHit:
         """What a box that somebody drew on a frame shows: of a grid of its pixels the one at median distance.
 
         Args:
@@ -227,7 +227,7 @@ class Result:
         """Videos of the run."""
         return len(self._videos)
 
-    def frames_seeing(self, place: F64, video: int | None = None) -> list[Seeing]:
+    def visible_frames(self, place: F64, video: int | None = None) -> list[VisibleFrame]:
         """Registered frames that see the point of the surface nearest to a (3,) place, best first.
 
         With `video` those of one video alone; `BadInput` when there is no such one.
@@ -238,7 +238,7 @@ class Result:
         point, tolerance = np.array(on.point), TOLERANCE_SPACINGS * self._spacing
         normal = self._normals[on.face]
         found = views_of_place(point[None], normal, self.views, self._surface, tolerance, point, self._crop)
-        seeing = []
+        visible = []
         for one in found:
             row = self._frames[one.frame_index]
             if video not in (None, row["video"]):
@@ -247,8 +247,8 @@ class Result:
             pixel = (x * self._crop.source_width, y * self._crop.source_height)
             source = int(row["source_index"])
             time_s, quality = float(row["time_s"]), round(one.quality, 4)
-            seeing.append(Seeing(one.frame_index, int(row["video"]), source, time_s, quality, *pixel))
-        return seeing
+            visible.append(VisibleFrame(one.frame_index, int(row["video"]), source, time_s, quality, *pixel))
+        return visible
 
     def _defect_of(self, face: int) -> int | None:
         defects = self.mesh.extra.get("defect_id")

@@ -57,7 +57,7 @@ class StageTask:
         self.progress(min(1.0, done / total) if total else 1.0, message)
 
     @property
-    def piece(self) -> int:
+    def submodel(self) -> int:
         """Number of the model that it works on; 0 is the run's own."""
         return int(self.args.get("piece", 0))
 
@@ -67,18 +67,18 @@ class StageTask:
         `StageFailed` when it depends on none of them.
         """
         for key in keys:
-            for name in (key_of(key, self.piece), key):
+            for name in (key_of(key, self.submodel), key):
                 if name in self.inputs:
                     return self.inputs[name]
         raise StageFailed(f"task {self.key} needs the result of {' or '.join(keys)}", where=self.key)
 
     def has(self, key: str) -> bool:
         """Whether it depends on `key`, of its own model."""
-        return key_of(key, self.piece) in self.inputs
+        return key_of(key, self.submodel) in self.inputs
 
     def fan_in(self, stage: str) -> list[tuple[str, Path]]:
         """(key, folder) of every finished task of a fanned-out stage, ordered by key."""
-        return [(key, self.inputs[key]) for key in parts_of(self.inputs, stage, self.piece)]
+        return [(key, self.inputs[key]) for key in parts_of(self.inputs, stage, self.submodel)]
 
 
 @dataclass(frozen=True)

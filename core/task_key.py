@@ -9,30 +9,30 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 _PART_MARK = "/"
-_PIECE_MARK = "@"
+_SUBMODEL_MARK = "@"
 _FILE_MARK = "__"
 """Stands for the part mark in a file name."""
 
 
-def key_of(stage: str, piece: int = 0, part: str = "") -> str:
+def key_of(stage: str, submodel: int = 0, part: str = "") -> str:
     """Key of a task: its stage, the number of the model (0 is the run's own), and which of many it is."""
-    model = f"{stage}{_PIECE_MARK}{piece}" if piece else stage
+    model = f"{stage}{_SUBMODEL_MARK}{submodel}" if submodel else stage
     return f"{model}{_PART_MARK}{part}" if part else model
 
 
-def chunk_key(stage: str, number: int, piece: int = 0) -> str:
+def chunk_key(stage: str, number: int, submodel: int = 0) -> str:
     """Key of the task that works on one chunk of frames or views, e.g. ``features/003``."""
-    return key_of(stage, piece, f"{number:03d}")
+    return key_of(stage, submodel, f"{number:03d}")
 
 
 def stage_of(key: str) -> str:
     """Name of the stage of a task."""
-    return _model_and_part(key)[0].split(_PIECE_MARK, 1)[0]
+    return _model_and_part(key)[0].split(_SUBMODEL_MARK, 1)[0]
 
 
-def piece_of(key: str) -> int:
+def submodel_of(key: str) -> int:
     """Number of the model that a task works on; 0 is the run's own."""
-    return int(_model_and_part(key)[0].partition(_PIECE_MARK)[2] or 0)
+    return int(_model_and_part(key)[0].partition(_SUBMODEL_MARK)[2] or 0)
 
 
 def part_of(key: str) -> str:
@@ -40,9 +40,9 @@ def part_of(key: str) -> str:
     return _model_and_part(key)[1]
 
 
-def parts_of(keys: Iterable[str], stage: str, piece: int = 0) -> list[str]:
+def parts_of(keys: Iterable[str], stage: str, submodel: int = 0) -> list[str]:
     """Those of `keys` that are one of many tasks of `stage` for a model, sorted."""
-    return sorted(key for key in keys if part_of(key) and key_of(stage, piece) == _model_and_part(key)[0])
+    return sorted(key for key in keys if part_of(key) and key_of(stage, submodel) == _model_and_part(key)[0])
 
 
 def file_stem(key: str) -> str:

@@ -21,7 +21,7 @@ _YAWS_DEG = (-60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0)
 _PITCHES_DEG = (-30.0, -15.0, 0.0, 15.0, 30.0)
 _MIN_SEPARATION_DEG = 45.0
 _FRAMING_POINTS = 20_000
-_FULL_SIGHT_PIXELS = 12
+_FULLY_SEEN_PIXELS = 12
 """A defect that covers this many pixels of the small trial picture is seen well."""
 
 
@@ -139,5 +139,5 @@ def choose_two(picture: Sketch, points: F64, cam_from_world: F64, aspect: float)
 def _merit(defects: NDArray[np.int32], front: NDArray[np.bool_], yaw_deg: float, pitch_deg: float) -> float:
     """Defects seen well count most, then the surface seen from its front, then nearness to the cameras' direction."""
     counts = np.bincount(defects[(defects >= 0) & front])
-    seen = float(np.minimum(1.0, counts / _FULL_SIGHT_PIXELS).sum())
+    seen = float(np.minimum(1.0, counts / _FULLY_SEEN_PIXELS).sum())
     return seen + float(front.mean()) - 0.002 * (abs(yaw_deg) + 2 * abs(pitch_deg))

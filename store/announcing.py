@@ -1,8 +1,8 @@
-"""Which tasks workers are told of by message: in the order of turns, and at most two per free slot of a queue.
+"""Which tasks workers are told of by message: in the order of turns, at most two for each task that could run besides.
 
-So few messages wait that who comes later has a turn soon; the second of a slot is there when its first task ends. A
-task is noted as announced before its message is sent, and until it is leased. A message that was lost shows by a
-slot that stays free while its task waits: the task is then announced again.
+So few messages wait that who comes later has a turn soon; the second is there when the task of the first ends. A
+task is noted as announced before its message is sent, and until it is leased. A message that was lost shows where
+a worker stays below its concurrency limit while the task waits: the task is then announced again.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from store.models import LEASABLE, Inspection, Task, Worker
 from store.monitoring import SEEN_WITHIN
 from store.turns import tasks_in_turn
 
-PER_FREE_SLOT = 2
+PER_FREE_TASK = 2
+"""Messages for each task that workers could run besides those that they do: see above."""
 _LOCK = 0x414E4E4F
 """PostgreSQL advisory lock: who announces counts what others have announced."""
 
@@ -40,25 +41,25 @@ class Announcements:
 
     db: Database
 
-    def choose(self, unheard_s: float | None = None) -> list[Announcement]:
+    def choose(self, overdue_s: float | None = None) -> list[Announcement]:
         """Tasks to announce now, in this order; they are noted as announced.
 
         Args:
-            unheard_s: also those again that were announced longer ago than this, in seconds; None = only new ones.
+            overdue_s: also those again that were announced longer ago than this, in seconds; None = only new ones.
         """
         with self.db.write() as session:
             self.db.lock(session, _LOCK)
             now = self.db.now(session)
-            due = Task.announced_at.is_(None) if unheard_s is None else unheard(now, unheard_s)
-            free, announced = _free_slots(session, now), _count(session, ~due)
+            due = Task.announced_at.is_(None) if overdue_s is None else is_overdue(now, overdue_s)
+            free, announced = _free_capacity(session, now), _count(session, ~due)
             chosen: list[Announcement] = []
             for queue in sorted(free):
-                chosen += _take(session, now, queue, due, PER_FREE_SLOT * free[queue] - announced[queue])
+                chosen += _take(session, now, queue, due, PER_FREE_TASK * free[queue] - announced[queue])
             return chosen
 
 
-def unheard(now: datetime, seconds: float) -> ColumnElement[bool]:
-    """True for a task that was not announced, or so long ago that nobody seems to have heard it."""
+def is_overdue(now: datetime, seconds: float) -> ColumnElement[bool]:
+    """True for a task that was not announced, or so long ago that it seems to be lost."""
     return or_(Task.announced_at.is_(None), Task.announced_at < now - timedelta(seconds=seconds))
 
 
@@ -84,8 +85,8 @@ def _count(session: Session, announced: ColumnElement[bool]) -> Counter[Queue]:
     return Counter({queue: count for queue, count in session.execute(query)})  # noqa: C416 - rows are no plain tuples
 
 
-def _free_slots(session: Session, now: datetime) -> Counter[Queue]:
-    """Slots in which nothing runs, by the queues that their workers serve."""
+def _free_capacity(session: Session, now: datetime) -> Counter[Queue]:
+    """Tasks that workers could run besides those that they do, by the queues that they serve."""
     leased = Counter(session.scalars(select(Task.lease_owner).where(Task.state == TaskState.LEASED)))
     free: Counter[Queue] = Counter()
     for worker in session.scalars(select(Worker).where(Worker.seen_at > now - SEEN_WITHIN)):

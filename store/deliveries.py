@@ -296,8 +296,8 @@ def _note_health(session: Session, webhook: Webhook, outcome: Outcome, now: date
     elif webhook.failures:
         webhook.failures, webhook.paused_until = 0, None
         waiting = (WebhookDelivery.webhook_id == webhook.id, WebhookDelivery.state == DeliveryState.PENDING)
-        unheard = or_(WebhookDelivery.status.is_(None), WebhookDelivery.status.in_(_AWAY))
-        session.execute(update(WebhookDelivery).where(*waiting, unheard).values(next_at=now))
+        unanswered = or_(WebhookDelivery.status.is_(None), WebhookDelivery.status.in_(_AWAY))
+        session.execute(update(WebhookDelivery).where(*waiting, unanswered).values(next_at=now))
 
 
 def _give_up(session: Session, webhook_id: str) -> None:

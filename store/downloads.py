@@ -49,7 +49,7 @@ class Sink(Protocol):
         ...
 
     def restart(self) -> None:
-        """Forget all of them."""
+        """Delete all of them."""
         ...
 
 

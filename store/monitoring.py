@@ -78,11 +78,11 @@ class WorkerRegistry:
 
     db: Database
 
-    def seen(self, name: str, queues: Sequence[str], slots: int = 0) -> None:
+    def seen(self, name: str, queues: Sequence[str], concurrency: int = 0) -> None:
         """A worker is alive, and takes so many tasks side by side by message."""
         with self.db.write() as session:
             now = self.db.now(session)
-            known = {"queues": list(queues), "slots": slots, "seen_at": now}
+            known = {"queues": list(queues), "slots": concurrency, "seen_at": now}
             statement = insert_into(session, Worker).values(
                 name=name, host=platform.node()[:128], started_at=now, **known
             )

@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session
 
 from core.states import AttemptOutcome, InspectionState, Queue, TaskState
 from store.advance import accept, advance
-from store.announcing import unheard
+from store.announcing import is_overdue
 from store.db import Database
 from store.events import tell_change
 from store.graph import CORE_GRAPH, Graph
@@ -60,7 +60,7 @@ class Plan:
         *,
         inspection_id: str | None = None,
         queues: Collection[str] = tuple(Queue),
-        unheard_s: float | None = None,
+        overdue_s: float | None = None,
     ) -> Lease | None:
         """Take the first runnable task of the inspection whose turn it is (`store.turns`); None when there is none.
 
@@ -68,12 +68,12 @@ class Plan:
             owner: name in the lease.
             inspection_id: of this inspection only.
             queues: of these only.
-            unheard_s: only what was not announced by message, or longer ago than this, in seconds.
+            overdue_s: only what was not announced by message, or longer ago than this, in seconds.
         """
         with self.db.read() as session:
             which: list[ColumnElement[bool]] = [Task.queue.in_(queues)]
-            if unheard_s is not None:
-                which.append(unheard(self.db.now(session), unheard_s))
+            if overdue_s is not None:
+                which.append(is_overdue(self.db.now(session), overdue_s))
             query = inspections_in_turn(select(Task.id).where(*_runnable(Inspection.id), *which).exists())
             if inspection_id is not None:
                 query = query.where(Inspection.id == inspection_id)

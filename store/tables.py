@@ -26,7 +26,7 @@ from core.scene.detection import DETECTION_COLUMNS
 from core.scene.on_row import ROW_COLUMNS
 from core.scene.size import SIZE_COLUMNS
 from core.stage import Facts
-from core.task_key import piece_of, stage_of
+from core.task_key import stage_of, submodel_of
 from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database
 from store.leasing import changed
@@ -311,7 +311,7 @@ def rows_of(key: str, facts: Facts, folder: Path) -> dict[str, Any]:
     rows: dict[str, Any] = {"metrics": _metrics(facts)}
     if stage in _CASE_STAGES and "name" in facts:
         rows["cases"] = [facts]
-    files = {} if piece_of(key) else _TABLE_FILES.get(stage, {})
+    files = {} if submodel_of(key) else _TABLE_FILES.get(stage, {})
     for table, name in files.items():
         path = folder / name
         if path.is_file():

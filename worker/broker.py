@@ -19,7 +19,7 @@ from kombu import Exchange
 from kombu import Queue as BrokerQueue
 
 from core.states import AttemptOutcome, Queue
-from core.task_key import key_of, part_of, piece_of, stage_of
+from core.task_key import key_of, part_of, stage_of, submodel_of
 from store.announcing import Announcements
 from store.db import Database
 from store.factory import open_artifacts
@@ -76,20 +76,20 @@ class TaskQueue:
             worker_send_task_events=True,
         )
 
-    def announce(self, announcements: Announcements, unheard_s: float | None = None) -> int:
-        """Send the messages that are wanted now, in order; returns how many. `unheard_s`: see `Announcements.choose`.
+    def announce(self, announcements: Announcements, overdue_s: float | None = None) -> int:
+        """Send the messages that are wanted now, in order; returns how many. `overdue_s`: see `Announcements.choose`.
 
         A broker that is away is noticed before tasks are noted as announced.
         """
         with self._app.connection_for_write() as connection:
             connection.ensure_connection(max_retries=1, timeout=_CONNECT_S)
-            chosen = announcements.choose(unheard_s)
+            chosen = announcements.choose(overdue_s)
             for one in chosen:
-                part, piece = part_of(one.key), piece_of(one.key)
+                part, submodel = part_of(one.key), submodel_of(one.key)
                 self._app.send_task(
                     _PREFIX + stage_of(one.key),
                     args=(one.inspection_id, part) if part else (one.inspection_id,),
-                    kwargs={"piece": piece} if piece else {},
+                    kwargs={"piece": submodel} if submodel else {},
                     queue=self._queues[one.queue],
                     connection=connection,
                     retry=False,
@@ -187,9 +187,15 @@ def run_worker(settings: DeploymentSettings, database: Database, queues: Sequenc
         workers: tasks side by side.
     """
     # What is not fed by messages must not count among those who wait for some.
-    slots = workers if settings.broker_url else 0
+    concurrency = workers if settings.broker_url else 0
     service = WorkerService(
-        settings, database, open_artifacts(settings), load_graph(settings.graph), unique_name(), tuple(queues), slots
+        settings,
+        database,
+        open_artifacts(settings),
+        load_graph(settings.graph),
+        unique_name(),
+        tuple(queues),
+        concurrency,
     )
     _log.info(
         "worker_started", name=service.name, queues=list(queues), workers=workers, broker=bool(settings.broker_url)
@@ -218,9 +224,9 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
     queue = TaskQueue(settings.broker(), settings.visibility_timeout_s)
     announcements = Announcements(service.database)
 
-    def announce(unheard_s: float | None = None) -> None:
-        service.report()  # else the first messages wait until somebody knows of this worker's slots
-        queue.announce(announcements, unheard_s)
+    def announce(overdue_s: float | None = None) -> None:
+        service.report()  # else the first messages wait until somebody knows how many tasks this worker takes
+        queue.announce(announcements, overdue_s)
 
     sender = Periodic("queue", announce, settings.sweep_s)
     again = Periodic("queue_again", partial(announce, settings.sweep_s), settings.sweep_s)
@@ -232,8 +238,8 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
     def leased(lease: Callable[[], Lease | None]) -> Lease | None:
         return retried_until(runner.interrupted, plan.db, lease)
 
-    def run_next(unheard_s: float | None) -> bool:
-        lease = leased(lambda: plan.lease(service.name, queues=service.queues, unheard_s=unheard_s))
+    def run_next(overdue_s: float | None) -> bool:
+        lease = leased(lambda: plan.lease(service.name, queues=service.queues, overdue_s=overdue_s))
         if lease is not None:
             _log.warning("ran_without_message", **ids(lease))
             runner.run(lease)
@@ -246,7 +252,7 @@ def _fed_by_broker(service: WorkerService, workers: int) -> int:
     def on_message(inspection_id: str, key: str) -> Ending | None:
         ending = limit.on_message(lambda: run_named(inspection_id, key))
         if ending is None:
-            sender.nudge()  # the slot of this message is free for another
+            sender.nudge()  # another message may take the place of this one
         return ending
 
     # A broker that stops delivering to this worker costs time, not the job.

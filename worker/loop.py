@@ -105,15 +105,15 @@ class ConcurrencyLimit:
 
         Args:
             run_next: leases the next task and runs it to its end; False when there was none. Its argument is as
-                `unheard_s` of `Plan.lease`: the first task must be one of which no message came in time, which shows
+                `overdue_s` of `Plan.lease`: the first task must be one of which no message came in time, which shows
                 that messages do not come. After it any will do.
         """
-        unheard_s: float | None = self._quiet_s
+        overdue_s: float | None = self._quiet_s
         while self._is_quiet() and self._free.acquire(blocking=False):
             try:
-                if not run_next(unheard_s):
+                if not run_next(overdue_s):
                     return
-                unheard_s = None
+                overdue_s = None
             finally:
                 self._free.release()
 
@@ -154,7 +154,7 @@ class WorkerService:
     name: str
     """Owner of its leases; unique, or kept over restarts by whoever can vouch that the old process is gone."""
     queues: Sequence[str] = tuple(Queue)
-    slots: int = 0
+    concurrency: int = 0
     """Tasks side by side that it takes by message."""
     on_end: Callable[[], None] = field(default=lambda: None)
     """Called whenever a task ended: others may have become runnable."""
@@ -213,7 +213,7 @@ class WorkerService:
 
     def report(self) -> None:
         """Say that this worker is there, and what it takes."""
-        self._registry.seen(self.name, self.queues, self.slots)
+        self._registry.seen(self.name, self.queues, self.concurrency)
 
     def start(self) -> None:
         """Begin with the periodic tasks."""

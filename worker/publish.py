@@ -23,7 +23,7 @@ from core.errors import Cancelled
 from core.flags import Verdict
 from core.outputs import BEST_CASE, OF_FURTHER_MODELS, OUTPUTS, TABLES, Output, best_case, is_of_page
 from core.report.build import Report, build_report, write_tables
-from core.report.load import load_tables, served_pieces
+from core.report.load import load_tables, served_submodels
 from core.report.record import RunRecord, TaskRecord
 from core.settings import Settings
 from core.stage import Facts
@@ -149,10 +149,10 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
 def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:
     """(published path, file) of everything the table of outputs finds."""
     wanted = [(output, "", 0) for output in OUTPUTS]
-    for piece in served_pieces(folders):
-        wanted += [(output, f"models/{piece}/", piece) for output in OF_FURTHER_MODELS]
-    for output, below, piece in wanted:
-        source = _source(output, folders, facts, piece)
+    for submodel in served_submodels(folders):
+        wanted += [(output, f"models/{submodel}/", submodel) for output in OF_FURTHER_MODELS]
+    for output, below, submodel in wanted:
+        source = _source(output, folders, facts, submodel)
         if source is None or (output.needs_trust and not trusted):
             continue
         if not output.folder:
@@ -162,9 +162,9 @@ def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: boo
             yield f"{below}{output.path}/{path.relative_to(source).as_posix()}", path
 
 
-def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts], piece: int) -> Path | None:
+def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts], submodel: int) -> Path | None:
     for key, inner in output.sources:
-        folder = folders.get(best_case(facts) if key == BEST_CASE else key_of(key, piece))
+        folder = folders.get(best_case(facts) if key == BEST_CASE else key_of(key, submodel))
         if folder is not None and (folder / inner).exists():
             return folder / inner
     return None

@@ -27,7 +27,7 @@ class Placement:
     """One detection against the truth."""
 
     outcome: str
-    rung: str
+    method: str
     true_defect: int | None
     """None for a false box."""
     error_mm: float | None
@@ -74,7 +74,7 @@ def place_detections(
         placements.append(
             Placement(
                 outcome=str(row["outcome"]),
-                rung=str(row.get("rung") or ""),
+                method=str(row.get("rung") or ""),
                 true_defect=defect,
                 error_mm=error,
                 wrong=wrong,
@@ -99,10 +99,10 @@ def patch_distance(point: F64, patch: F64) -> float:
 
 
 def score_placements(placements: list[Placement], persistence: Mapping[int, float | None]) -> dict[str, Any]:
-    """Mapped and wrong shares, errors by rung, and what became of false boxes."""
+    """Mapped and wrong shares, errors by placement method, and what became of false boxes."""
     placeable = [item for item in placements if item.true_defect is not None]
     mapped = [item for item in placeable if item.mapped]
-    rungs = sorted({item.rung for item in placeable if item.error_mm is not None})
+    methods = sorted({item.method for item in placeable if item.error_mm is not None})
     return {
         "detections": len(placements),
         "outcomes": dict(sorted(Counter(item.outcome for item in placements).items())),
@@ -112,12 +112,12 @@ def score_placements(placements: list[Placement], persistence: Mapping[int, floa
         "wrong_mapped": sum(item.wrong for item in mapped),
         "wrong_mapped_share": _share(sum(item.wrong for item in mapped), len(mapped)),
         **_errors(mapped),
-        "by_rung": {rung: _rung([item for item in placeable if item.rung == rung]) for rung in rungs},
+        "by_rung": {one: _of_method([item for item in placeable if item.method == one]) for one in methods},
         "false_boxes": _false_boxes([item for item in placements if item.true_defect is None], persistence),
     }
 
 
-def _rung(items: list[Placement]) -> dict[str, Any]:
+def _of_method(items: list[Placement]) -> dict[str, Any]:
     placed = [item for item in items if item.error_mm is not None]
     wrong = sum(item.wrong for item in placed)
     return {"placed": len(placed), "wrong": wrong, "wrong_share": _share(wrong, len(placed)), **_errors(placed)}

@@ -59,10 +59,10 @@ def _placement_rows(placement: dict[str, Any]) -> list[tuple[str, str]]:
             f"{_text(placement['position_median_mm'])} / {_text(placement['position_p95_mm'])}",
         ),
     ]
-    for rung, scores in placement["by_rung"].items():
+    for method, scores in placement["by_rung"].items():
         rows.append(
             (
-                f"  rung {rung or '-'}: placed, wrong, median / 95 % (mm)",
+                f"  rung {method or '-'}: placed, wrong, median / 95 % (mm)",
                 f"{scores['placed']}, {scores['wrong']}, "
                 f"{_text(scores['position_median_mm'])} / {_text(scores['position_p95_mm'])}",
             )

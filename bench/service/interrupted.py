@@ -19,7 +19,7 @@ KILLS = 100
 UPLOAD_BYTES = 8 << 20
 RATE = 32 << 20
 """Bytes per second that the client sends, so that there is a middle to be killed in."""
-_PATIENCE_S = 20.0
+_TIMEOUT_S = 20.0
 
 
 def interrupted(folder: Path, seed: int = 0) -> Table:
@@ -75,7 +75,7 @@ def _finish(server: Server, path: str, source: Path) -> bool:
     """Go on from where the server is; whether the file is the one that was sent."""
     rest = source.with_suffix(".rest")
     with httpx.Client(base_url=server.url) as http:
-        deadline = time.monotonic() + _PATIENCE_S
+        deadline = time.monotonic() + _TIMEOUT_S
         # The server may still be writing what the dead client had sent.
         while not (head := http.head(path, headers=TUS)).is_success and time.monotonic() < deadline:
             time.sleep(0.05)

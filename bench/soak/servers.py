@@ -12,7 +12,7 @@ from pathlib import Path
 
 from core.errors import BadInput
 
-_PATIENCE_S = 60.0
+_TIMEOUT_S = 60.0
 
 
 def free_port() -> int:
@@ -24,7 +24,7 @@ def free_port() -> int:
 
 def wait_for_port(port: int) -> None:
     """Wait until somebody listens; `TimeoutError` after a minute."""
-    deadline = time.monotonic() + _PATIENCE_S
+    deadline = time.monotonic() + _TIMEOUT_S
     while True:
         try:
             socket.create_connection(("127.0.0.1", port), timeout=1.0).close()

@@ -46,7 +46,7 @@ class Fitted:
     first: KeyHit | None = None
     """Of the first frame that has a key; None when no key lies in the video."""
     last: KeyHit | None = None
-    doubtful: bool = False
+    ambiguous: bool = False
     """Whether the other readings are as good, and not only the same shifted by a frame."""
 
     @property
@@ -99,10 +99,10 @@ def fit_convention(
         from_one = next(one for one in readings if one.clock == "index+1")
         if from_one.n_lost == best.n_lost:
             rivals = () if from_one.frames == best.frames else (best,)
-            return _fitted(from_one, table, others=rivals, flags=_flags(from_one, rivals, doubtful=False))
+            return _fitted(from_one, table, others=rivals, flags=_flags(from_one, rivals, ambiguous=False))
     if len(best.strays) <= MAX_STRAYS * len(keys):
-        others, doubtful = _others(best, readings, table)
-        return _fitted(best, table, others=others, doubtful=doubtful, flags=_flags(best, others, doubtful))
+        others, ambiguous = _others(best, readings, table)
+        return _fitted(best, table, others=others, ambiguous=ambiguous, flags=_flags(best, others, ambiguous))
     displayed = read("displayed", keys, table)
     frames = [frame for frame in displayed.frames.values() if frame is not None]
     if len(frames) - len(displayed.hit) > MAX_SHARED * len(frames):
@@ -122,10 +122,10 @@ def _rank(one: Reading) -> tuple[int, int, bool, int]:
 
 
 def _others(best: Reading, readings: Sequence[Reading], table: FrameTable) -> tuple[tuple[Reading, ...], bool]:
-    """Readings that may be meant as well, one for each set of frames; and whether that is a reason to doubt.
+    """Readings that may be meant as well, one for each set of frames; and whether that makes the times ambiguous.
 
     What fits by the keys' decimals alone is not disputed by what needs the slack as well. Every file in seconds from
-    the first frame is also one of frame numbers over the rate, counted from 1: such a shift is no doubt while the
+    the first frame is also one of frame numbers over the rate, counted from 1: such a shift is no ambiguity while the
     form that is documented fits and nothing speaks for the other.
     """
     fit = {one.clock: one for one in readings if _fits_like(one, best)}
@@ -135,7 +135,7 @@ def _others(best: Reading, readings: Sequence[Reading], table: FrameTable) -> tu
         fit |= {one.clock: one for one in usual[:1] if one.n_lost == best.n_lost + 1}
     documented = fit.get("pts")
     others: dict[tuple[int | None, ...], Reading] = {}
-    doubtful = False
+    ambiguous = False
     for clock, one in fit.items():
         frames = tuple(one.frames.values())
         if one.frames == best.frames or frames in others or (best.exact and not one.exact):
@@ -143,8 +143,8 @@ def _others(best: Reading, readings: Sequence[Reading], table: FrameTable) -> tu
         others[frames] = one
         twin = fit.get(FROM_ZERO.get(clock, clock))
         shift = documented is not None and clock in FROM_ZERO and twin is not None and twin.frames == documented.frames
-        doubtful |= not shift
-    return tuple(others.values()), doubtful
+        ambiguous |= not shift
+    return tuple(others.values()), ambiguous
 
 
 def _fits_like(one: Reading, best: Reading) -> bool:
@@ -152,7 +152,7 @@ def _fits_like(one: Reading, best: Reading) -> bool:
     return _rank(one)[:2] == _rank(best)[:2] and one.n_unexplained <= allowed
 
 
-def _flags(best: Reading, others: Sequence[Reading], doubtful: bool) -> tuple[Flag, ...]:
+def _flags(best: Reading, others: Sequence[Reading], ambiguous: bool) -> tuple[Flag, ...]:
     flags = []
     if best.strays:
         where = f"first key {shown(best.strays[0])}"
@@ -163,7 +163,7 @@ def _flags(best: Reading, others: Sequence[Reading], doubtful: bool) -> tuple[Fl
     if others:
         names = ", or ".join(f"{one.clock} ({MEANINGS[one.clock]})" for one in (best, *others))
         where = f"{names}; input.time_convention says which"
-        severity = Severity.WARNING if doubtful else Severity.INFO
+        severity = Severity.WARNING if ambiguous else Severity.INFO
         flags.append(Flag("annotation_times_ambiguous", severity, None, None, where))
     return tuple(flags)
 
@@ -174,7 +174,7 @@ def _fitted(
     *,
     forced: bool = False,
     others: tuple[Reading, ...] = (),
-    doubtful: bool = False,
+    ambiguous: bool = False,
     flags: tuple[Flag, ...] = (),
 ) -> Fitted:
     hits = {frame: key for key, frame in one.frames.items() if frame is not None}
@@ -183,7 +183,7 @@ def _fitted(
         if hits
         else (None, None)
     )
-    return Fitted(one, forced, others, flags, first, last, doubtful)
+    return Fitted(one, forced, others, flags, first, last, ambiguous)
 
 
 def _unclear(best: Reading, count: int, shared: int) -> BadInput:

@@ -15,11 +15,11 @@ from core.annotations.reading import Reading
 
 
 def advice(fitted: Fitted) -> list[str]:
-    """One sentence for each doubt about the time keys; none for a file that leaves none, or whose reading is told."""
+    """One sentence for each ambiguity of the time keys; none for a file that leaves none, or whose reading is told."""
     if fitted.forced:
         return []
     one, said = fitted.reading, []
-    if fitted.doubtful:
+    if fitted.ambiguous:
         said.append(_ambiguous(one, fitted.others))
     if one.blurred:
         said.append(

@@ -51,7 +51,7 @@ class Solution:
     """Distance of the farthest corner from the middle, over half the diagonal."""
     fov_deg: tuple[float | None, float | None]
     """Across and down; None where the lens turns back before the border."""
-    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
     """Why it should not be trusted, in words; empty when nothing speaks against it."""
 
 
@@ -173,23 +173,23 @@ def _judged(
     cells = np.clip((xy / size * GRID).astype(np.int64), 0, np.array(GRID) - 1)
     covered = len(np.unique(cells, axis=0)) / (GRID[0] * GRID[1])
     reach = float(np.linalg.norm(xy - size / 2, axis=1).max() / np.linalg.norm(size / 2))
-    doubts = []
+    warnings = []
     if covered < MIN_COVERED:
-        doubts.append(
+        warnings.append(
             f"corners cover {covered:.0%} of the picture, {MIN_COVERED:.0%} are needed: move the board everywhere"
         )
     if reach < MIN_REACH:
-        doubts.append(f"no corner is farther out than {reach:.0%} of the half diagonal, {MIN_REACH:.0%} are needed")
+        warnings.append(f"no corner is farther out than {reach:.0%} of the half diagonal, {MIN_REACH:.0%} are needed")
     if rms_px > MAX_RMS_PX:
-        doubts.append(
+        warnings.append(
             f"the error of {rms_px:.2f} px is above {MAX_RMS_PX:g} px: blurred views, or a board that is not flat"
         )
     fov = _fov_deg(lens.fx, lens.cx, size_px[0], lens), _fov_deg(lens.fy, lens.cy, size_px[1], lens)
     if None in fov:
-        doubts.append("the lens turns back before the border of the picture, which no corner came near")
+        warnings.append("the lens turns back before the border of the picture, which no corner came near")
     calibration = calibration_of(lens, size_px, "the lens found")
     left_out = tuple(sorted(set(range(len(views))) - set(rows)))
-    return Solution(calibration, tuple(rows), left_out, rms_px, covered, reach, fov, tuple(doubts))
+    return Solution(calibration, tuple(rows), left_out, rms_px, covered, reach, fov, tuple(warnings))
 
 
 def _fov_deg(focal: float, centre: float, length: int, lens: Lens) -> float | None:

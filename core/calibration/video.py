@@ -14,7 +14,7 @@ from core.calibration.board import Board, CornerFinder, Corners, what_is_seen
 from core.calibration.solve import MIN_VIEWS, Solution, solve, too_few
 from core.errors import BadInput
 from core.geometry.lens import LensModel
-from core.video.opening import reopen_video
+from core.video.factory import reopen_video
 from core.video.pictures import find_pictures
 from core.video.probe import probe_video
 from core.video.shown import shown_frames

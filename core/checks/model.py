@@ -85,7 +85,7 @@ def check_model(
 
 
 def is_wrong(model: pycolmap.Reconstruction, table: PairTable, n_frames: int, n_search: int | None = None) -> bool:
-    """Whether `check_model` vetoes a model: the one rule by which a model is not gone on with."""
+    """Whether `check_model` rejects a model: the one rule by which a model is not gone on with."""
     return worst(check_model(model, model_stats(model), table, n_frames, n_search)) == Severity.ERROR
 
 

@@ -1,8 +1,8 @@
-"""Where to cut a model that the checks vetoed, and the parts of the video that are left between the cuts.
+"""Where to cut a model that the checks rejected, and the parts of the video that are left between the cuts.
 
-Pairs are doubted without any model: those that a fundamental matrix explains better than a motion of the known lens,
+Pairs are rejected without any model: those that a fundamental matrix explains better than a motion of the known lens,
 and those that triplets contradict. Where most pairs across a place of the sequence are, it is cut. Where no place is
-cut so, a check that vetoes a model says at which pairs it fails: where most pairs across one place do, the two sides
+cut so, a check that rejects a model says at which pairs it fails: where most pairs across one place do, the two sides
 are put together wrongly, and each may be right by itself. Single pairs that do not fit the model stay: they are the
 evidence that the parts are judged by in their turn.
 """
@@ -41,11 +41,11 @@ MAX_MISFIT_SHARE = 0.5
 
 @dataclass(frozen=True)
 class Pruned:
-    """A view graph without what a vetoed model and the triplets speak against."""
+    """A view graph without what a rejected model and the triplets speak against."""
 
     table: PairTable
     """All pairs; those taken out are there as tried in vain."""
-    doubted: int
+    n_rejected: int
     """Verified pairs taken out because no motion of the lens explains them, or because triplets contradict them."""
     cuts: Sequence[int]
     """Frames k such that nothing joins the frames up to k with those after it any more."""
@@ -58,21 +58,21 @@ def prune(table: PairTable, model: pycolmap.Reconstruction, position: F64, n_sea
 
     Args:
         table: pairs of ``graph.npz``.
-        model: vetoed (`pycolmap.Reconstruction`, image_id = index + 1).
+        model: rejected (`pycolmap.Reconstruction`, image_id = index + 1).
         position: (n,) place of every frame in the sequence (`core.matching.jumps.positions`).
         n_search: frames from this on are out of order: they make no cut and no part.
     """
-    doubted = table.verified & (table.config == UNCALIBRATED)
-    doubted |= contradicted(select(table, ~doubted))
-    # Where most pairs are doubted the others have only not been asked: they are in too few triplets.
+    rejected = table.verified & (table.config == UNCALIBRATED)
+    rejected |= contradicted(select(table, ~rejected))
+    # Where most pairs are rejected the others have only not been asked: they are in too few triplets.
     cuts = cut_apart(
-        table.pairs[table.verified].astype(np.int64), doubted[table.verified].astype(np.float64), 0.0, n_search
+        table.pairs[table.verified].astype(np.int64), rejected[table.verified].astype(np.float64), 0.0, n_search
     )
     # A model that was made of such pairs is bent over all its length, and would be cut at places that are right.
-    cuts = cuts or find_cuts(select(table, ~doubted), model, n_search)
-    rest = select(table, ~(doubted | spans_any(table, position, cuts)))
-    parts = find_parts(rest, n_search) if cuts or doubted.any() else []
-    return Pruned(rest, int(doubted.sum()), cuts, parts)
+    cuts = cuts or find_cuts(select(table, ~rejected), model, n_search)
+    rest = select(table, ~(rejected | spans_any(table, position, cuts)))
+    parts = find_parts(rest, n_search) if cuts or rejected.any() else []
+    return Pruned(rest, int(rejected.sum()), cuts, parts)
 
 
 def find_cuts(table: PairTable, model: pycolmap.Reconstruction, n_search: int) -> list[int]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from core.errors import StageFailed
 from core.frames.sampling import ChosenFrame
 from core.scene.frame import Crop, image_name
+from core.video.factory import reopen_video
 from core.video.limits import MAX_FRAME_PIXELS
-from core.video.opening import reopen_video
 from core.video.shown import shown_frames
 from core.video.table import FrameTable
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.mapping.consensus import Testimony
+from core.mapping.consensus import ViewConsensus
 from core.mapping.patches import Patch
 
 F64 = NDArray[np.float64]
@@ -22,7 +22,7 @@ DEPTH_WEIGHT = 0.8
 """A patch that depth maps see through is a sheet that fusion or Poisson left before the blades."""
 PRIOR_VIEWS = 3.0
 """The share of supporting views is trusted only as far as there are more of them than this."""
-WITNESSED = 0.5
+CONSISTENT = 0.5
 """Share of depth maps' looks, or of sparse points, on a patch that is there."""
 MIN_ALONE = 0.5
 """A patch that nothing else speaks for has to lie under most of a detection's pixels. On ten rendered scenes all six
@@ -45,7 +45,7 @@ class Candidate:
     nearest: bool
     """No other candidate of the detection is nearer to the camera."""
     depth: float | None
-    """Share of the depth maps' looks that met it, see `core.mapping.depth_witness`."""
+    """Share of the depth maps' looks that met it, see `core.mapping.depth_consistency`."""
     sparse: float | None = None
     """Of the sparse points of the detection that lie on it or before it, the share on it; None = too few."""
 
@@ -57,12 +57,12 @@ def merit(candidate: Candidate, visible: int, support: int) -> float:
     return share + NEAREST_BONUS * candidate.nearest + SHARE_WEIGHT * candidate.patch.share + DEPTH_WEIGHT * depth
 
 
-def is_witnessed(candidate: Candidate) -> bool:
+def is_depth_consistent(candidate: Candidate) -> bool:
     """Whether depth maps or sparse points say that what was seen lies on it."""
-    return any(share is not None and share >= WITNESSED for share in (candidate.depth, candidate.sparse))
+    return any(share is not None and share >= CONSISTENT for share in (candidate.depth, candidate.sparse))
 
 
-def overruled(candidate: Candidate, visible: int, support: int) -> bool:
+def is_contradicted(candidate: Candidate, visible: int, support: int) -> bool:
     """Whether the sparse points show something before it, and neither depth maps nor most views that could see it
     show it there.
 
@@ -70,26 +70,28 @@ def overruled(candidate: Candidate, visible: int, support: int) -> bool:
     """
     if candidate.sparse is None or candidate.sparse >= MIN_SPARSE or 2 * support > visible:
         return False
-    return candidate.depth is None or candidate.depth < WITNESSED
+    return candidate.depth is None or candidate.depth < CONSISTENT
 
 
-def unheard(candidate: Candidate, support: int) -> bool:
+def is_unsupported(candidate: Candidate, support: int) -> bool:
     """Whether the smaller part of the detection's pixels is all that speaks for it: no view, no depth map, no points.
 
     That is a sliver of the next blade beside one whose surface is missing.
     """
-    return support == 0 and candidate.patch.share < MIN_ALONE and not is_witnessed(candidate)
+    return support == 0 and candidate.patch.share < MIN_ALONE and not is_depth_consistent(candidate)
 
 
-def choose(candidates: Sequence[Candidate], said: Testimony) -> dict[int, tuple[int, float]]:
+def choose(candidates: Sequence[Candidate], consensus: ViewConsensus) -> dict[int, tuple[int, float]]:
     """The best candidate of each detection that has one: its row and by how much it leads (infinite without another).
 
-    Those that are overruled or unheard do not count.
+    Those that are contradicted or unsupported do not count.
     """
-    visible, support = said.n_visible, said.n_support
+    visible, support = consensus.n_visible, consensus.n_support
     by_detection: dict[int, list[tuple[float, int]]] = {}
     for row, candidate in enumerate(candidates):
-        if overruled(candidate, int(visible[row]), int(support[row])) or unheard(candidate, int(support[row])):
+        if is_contradicted(candidate, int(visible[row]), int(support[row])) or is_unsupported(
+            candidate, int(support[row])
+        ):
             continue
         value = merit(candidate, int(visible[row]), int(support[row]))
         by_detection.setdefault(candidate.detection, []).append((-value, row))

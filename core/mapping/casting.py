@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.boxes import Box, in_box
-from core.mapping.candidates import MIN_SHARE, Candidate, choose, is_witnessed
+from core.mapping.candidates import MIN_SHARE, Candidate, choose, is_depth_consistent
 from core.mapping.confidence import Parts
-from core.mapping.consensus import Testimony, testimony
-from core.mapping.depth_witness import seen_share
+from core.mapping.consensus import ViewConsensus, view_consensus
+from core.mapping.depth_consistency import seen_share
 from core.mapping.patches import Patch, split_patches
 from core.mapping.pixels import Footprint
 from core.mapping.scene import Scene, places_nearest
@@ -66,7 +66,7 @@ MAX_CHANCE = 0.01
 
 
 @dataclass(frozen=True)
-class Sight:
+class RayBundle:
     """A detection as a view sees it. The view need not be registered: its pose may be an estimate."""
 
     detection: int
@@ -87,7 +87,7 @@ class Sight:
 
 @dataclass(frozen=True)
 class Cast:
-    """Where a sight ended up on the surface."""
+    """Where a ray bundle meets the surface."""
 
     place: F64
     """(3,) point of the mesh."""
@@ -104,7 +104,7 @@ class Cast:
 
 @dataclass(frozen=True)
 class Missed:
-    """Why a sight has no place on the surface."""
+    """Why a ray bundle has no place on the surface."""
 
     reason: Reason
     """`OFF_SURFACE`, also where something nearer than any surface is seen; `OCCLUDED` when only the back of the
@@ -113,7 +113,7 @@ class Missed:
 
 @dataclass(frozen=True)
 class _Sparse:
-    """Sparse points in the box of a sight."""
+    """Sparse points in the box of a ray bundle."""
 
     ids: I64
     """(n,)"""
@@ -123,56 +123,56 @@ class _Sparse:
     """(n,) from the camera."""
 
 
-def cast_sights(scene: Scene, sights: Sequence[Sight]) -> list[Cast | Missed]:
-    """Place every sight, in order."""
+def cast_bundles(scene: Scene, bundles: Sequence[RayBundle]) -> list[Cast | Missed]:
+    """Place every ray bundle, in order."""
     candidates: list[Candidate] = []
-    outcome: list[Cast | Missed] = [Missed(Reason.OFF_SURFACE) for _ in sights]
-    boxed = [_sparse_in_box(scene, sight) for sight in sights]
-    for row, sight in enumerate(sights):
-        found, blocked = _candidates(scene, row, sight, boxed[row])
+    outcome: list[Cast | Missed] = [Missed(Reason.OFF_SURFACE) for _ in bundles]
+    boxed = [_sparse_in_box(scene, bundle) for bundle in bundles]
+    for row, bundle in enumerate(bundles):
+        found, blocked = _candidates(scene, row, bundle, boxed[row])
         if not found and blocked:
             outcome[row] = Missed(Reason.OCCLUDED)
         candidates += found
     places = places_nearest(scene.surface, [candidate.place for candidate in candidates])
     candidates = [replace(candidate, place=place) for candidate, place in zip(candidates, places, strict=True)]
-    said = _ask(scene, sights, candidates)
-    chosen = choose(candidates, said)
-    recall = _recall(said, [row for row, _ in chosen.values()])
+    consensus = _ask(scene, bundles, candidates)
+    chosen = choose(candidates, consensus)
+    recall = _recall(consensus, [row for row, _ in chosen.values()])
     for detection, (row, lead) in chosen.items():
-        sight, sparse = sights[detection], boxed[detection]
-        outcome[detection] = _cast(scene, sight, sparse, candidates[row], said, row, lead, recall)
+        bundle, sparse = bundles[detection], boxed[detection]
+        outcome[detection] = _cast(scene, bundle, sparse, candidates[row], consensus, row, lead, recall)
     return outcome
 
 
-def _candidates(scene: Scene, row: int, sight: Sight, boxed: _Sparse) -> tuple[list[Candidate], bool]:
+def _candidates(scene: Scene, row: int, bundle: RayBundle, boxed: _Sparse) -> tuple[list[Candidate], bool]:
     """Patches large enough, and whether the pixels meet only the back of the surface.
 
     No camera sees the back of a solid, so rays go on through backs. But where a thin blade was seen from both sides
     its two sheets can come out as one, turned either way: the first hits count as well, whatever their side, where
     depth maps or sparse points say that this is what was seen.
     """
-    rays = scene.views.rays(sight.samples.xy, sight.R)
-    origins = np.broadcast_to(sight.origin, rays.shape)
+    rays = scene.views.rays(bundle.samples.xy, bundle.R)
+    origins = np.broadcast_to(bundle.origin, rays.shape)
     first = scene.surface.cast(origins, rays)
     front = scene.surface.cast_front(first, origins, rays, 0.5 * scene.spacing)
-    found = [_candidate(scene, row, sight, patch, boxed) for patch in _large(scene, sight, rays, front)]
+    found = [_candidate(scene, row, bundle, patch, boxed) for patch in _large(scene, bundle, rays, front)]
     if (first.cosine[first.hit] < 0).any():
-        turned = _large(scene, sight, rays, replace(first, cosine=np.abs(first.cosine)))
-        found += filter(is_witnessed, (_candidate(scene, row, sight, patch, boxed) for patch in turned))
+        turned = _large(scene, bundle, rays, replace(first, cosine=np.abs(first.cosine)))
+        found += filter(is_depth_consistent, (_candidate(scene, row, bundle, patch, boxed) for patch in turned))
     nearest = min((candidate.patch.distance for candidate in found), default=0.0)
     found = [replace(candidate, nearest=candidate.patch.distance == nearest) for candidate in found]
     return found, bool((front.hit & (front.cosine <= 0)).any())
 
 
-def _large(scene: Scene, sight: Sight, rays: F64, hits: Hits) -> list[Patch]:
-    patches = split_patches(sight.samples, sight.origin, rays, hits, scene.spacing)
+def _large(scene: Scene, bundle: RayBundle, rays: F64, hits: Hits) -> list[Patch]:
+    patches = split_patches(bundle.samples, bundle.origin, rays, hits, scene.spacing)
     return [patch for patch in patches if patch.share >= MIN_SHARE]
 
 
-def _candidate(scene: Scene, row: int, sight: Sight, patch: Patch, boxed: _Sparse) -> Candidate:
-    depth = seen_share(scene.depth, sight.frame, patch.points, scene.spacing)
+def _candidate(scene: Scene, row: int, bundle: RayBundle, patch: Patch, boxed: _Sparse) -> Candidate:
+    depth = seen_share(scene.depth, bundle.frame, patch.points, scene.spacing)
     sparse = depth_agreement(boxed.distance, patch.distance, scene.spacing).share
-    return Candidate(row, patch, patch.centroid, _normal(scene, patch, sight.origin), False, depth, sparse)
+    return Candidate(row, patch, patch.centroid, _normal(scene, patch, bundle.origin), False, depth, sparse)
 
 
 def _normal(scene: Scene, patch: Patch, origin: F64) -> F64:
@@ -185,12 +185,12 @@ def _normal(scene: Scene, patch: Patch, origin: F64) -> F64:
     return normal
 
 
-def _ask(scene: Scene, sights: Sequence[Sight], candidates: Sequence[Candidate]) -> Testimony:
-    own = [sights[c.detection].view for c in candidates]
-    return testimony(
+def _ask(scene: Scene, bundles: Sequence[RayBundle], candidates: Sequence[Candidate]) -> ViewConsensus:
+    own = [bundles[c.detection].view for c in candidates]
+    return view_consensus(
         np.array([c.place for c in candidates]).reshape(-1, 3),
         np.array([c.normal for c in candidates]).reshape(-1, 3),
-        [sights[c.detection].label for c in candidates],
+        [bundles[c.detection].label for c in candidates],
         [-1 if view is None else view for view in own],
         scene.views,
         scene.frames,
@@ -199,59 +199,59 @@ def _ask(scene: Scene, sights: Sequence[Sight], candidates: Sequence[Candidate])
     )
 
 
-def _recall(said: Testimony, rows: Sequence[int]) -> float:
+def _recall(consensus: ViewConsensus, rows: Sequence[int]) -> float:
     """How often this detector finds what it could see: over the places that anything at all supports."""
-    visible, support = said.n_visible[list(rows)], said.n_support[list(rows)]
+    visible, support = consensus.n_visible[list(rows)], consensus.n_support[list(rows)]
     known = support > 0
     return float(support[known].sum() / visible[known].sum()) if known.any() else 0.0
 
 
 def _cast(
     scene: Scene,
-    sight: Sight,
+    bundle: RayBundle,
     boxed: _Sparse,
     candidate: Candidate,
-    said: Testimony,
+    consensus: ViewConsensus,
     row: int,
     lead: float,
     recall: float,
 ) -> Cast:
-    visible, support = int(said.n_visible[row]), int(said.n_support[row])
+    visible, support = int(consensus.n_visible[row]), int(consensus.n_support[row])
     near = np.abs(boxed.distance - candidate.patch.distance) <= max(2.0 * candidate.patch.radius, scene.tolerance)
     cloud, _ = scene.cloud.query(candidate.place)
-    x1, y1, x2, y2 = sight.box_px
-    in_cam = sight.R @ (candidate.place - sight.origin)
+    x1, y1, x2, y2 = bundle.box_px
+    in_cam = bundle.R @ (candidate.place - bundle.origin)
     parts = Parts(
         visible=visible,
         support=support,
-        same_label=int(said.same_label[row].sum()),
+        same_label=int(consensus.same_label[row].sum()),
         share=candidate.patch.share,
         cosine=candidate.patch.cosine,
         lead=lead,
         sparse=candidate.sparse,
         depth=candidate.depth,
         cloud_spacings=float(cloud) / scene.spacing if scene.spacing > 0 else 0.0,
-        score=sight.score,
+        score=bundle.score,
     )
-    pose = None if sight.view is None else scene.pose_covariance(sight.view)
+    pose = None if bundle.view is None else scene.pose_covariance(bundle.view)
     side = (x2 - x1 + y2 - y1) / 2
     return Cast(
         place=candidate.place,
         normal=candidate.normal,
         patch=candidate.patch,
         parts=parts,
-        sigma=place_sigma(in_cam, pose, side, sight.samples.outline, scene.focal_px, scene.spacing),
+        sigma=place_sigma(in_cam, pose, side, bundle.samples.outline, scene.focal_px, scene.spacing),
         contradicted=support == 0 and visible >= MIN_VISIBLE and (1.0 - recall) ** visible < MAX_CHANCE,
         point_ids=boxed.ids[near],
         points=boxed.points[near],
     )
 
 
-def _sparse_in_box(scene: Scene, sight: Sight) -> _Sparse:
+def _sparse_in_box(scene: Scene, bundle: RayBundle) -> _Sparse:
     """None where the pose is an estimate: no point was observed there."""
-    if sight.view is None:
+    if bundle.view is None:
         return _Sparse(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
-    xy, ids, points = scene.sparse.of(int(scene.views.frame_index[sight.view]))
-    inside = in_box(xy, sight.box_px)
-    distance = np.linalg.norm(points[inside] - sight.origin, axis=1)
+    xy, ids, points = scene.sparse.of(int(scene.views.frame_index[bundle.view]))
+    inside = in_box(xy, bundle.box_px)
+    distance = np.linalg.norm(points[inside] - bundle.origin, axis=1)
     return _Sparse(ids[inside], points[inside], distance)

@@ -46,7 +46,7 @@ class Parts:
     """Further observations of the same defect."""
     offset: float = 0.0
     """Distance from the defect's fused place in radii of the detection's patch."""
-    doubts: int = 0
+    model_warnings: int = 0
     """Warnings of the checks about the model: where it is bent, everything agrees and is wrong together."""
 
     def features(self) -> dict[str, float]:
@@ -85,7 +85,7 @@ class Parts:
             "score": self.score,
             "peers": self.peers,
             "offset": round(self.offset, 4),
-            "model_doubts": self.doubts,
+            "model_doubts": self.model_warnings,
         }
 
 
@@ -113,9 +113,9 @@ def confidence(parts: Parts, weights: Weights = WEIGHTS) -> float:
     features = parts.features()
     score = sum(weights[name] * value for name, value in features.items())
     place = 1.0 / (1.0 + exp(-max(-30.0, min(30.0, score))))
-    return min(0.99, max(0.01, place * model_right(parts.doubts)))
+    return min(0.99, max(0.01, place * model_right(parts.model_warnings)))
 
 
-def model_right(doubts: int) -> float:
+def model_right(warnings: int) -> float:
     """Probability that a model with so many warnings is right."""
-    return MODEL_RIGHT[min(doubts, len(MODEL_RIGHT) - 1)]
+    return MODEL_RIGHT[min(warnings, len(MODEL_RIGHT) - 1)]

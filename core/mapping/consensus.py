@@ -59,8 +59,8 @@ def widened(boxes: F64) -> F64:
 
 
 @dataclass(frozen=True)
-class Testimony:
-    """What the other views say of n places."""
+class ViewConsensus:
+    """Supporting, contradicting and silent views of n places."""
 
     could_see: Flags
     """(n, k) places by the frames of `LookedAt`."""
@@ -108,7 +108,7 @@ def could_see(
     return seen, xy
 
 
-def testimony(
+def view_consensus(
     places: F64,
     normals: F64,
     labels: Sequence[str],
@@ -117,7 +117,7 @@ def testimony(
     frames: LookedAt,
     surface: Surface,
     tolerance: float,
-) -> Testimony:
+) -> ViewConsensus:
     """Ask all frames that the detector saw about n places; a place's own frame (`own_rows`) is not asked."""
     seen, xy = could_see(places, normals, views, frames.rows, surface, tolerance)
     seen &= frames.rows[None] != np.asarray(own_rows, np.int64)[:, None]
@@ -131,4 +131,4 @@ def testimony(
         supports[asked, k] = inside.any(axis=1)
         equal = np.array([[name == labels[i] for name in names] for i in asked.tolist()])
         same[asked, k] = (inside & equal).any(axis=1)
-    return Testimony(seen, supports, same)
+    return ViewConsensus(seen, supports, same)

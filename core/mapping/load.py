@@ -18,7 +18,7 @@ from core.geometry.boxes import Box
 from core.geometry.pose import Pose
 from core.io.sparse import open_model
 from core.mapping.consensus import looked_at
-from core.mapping.depth_witness import DepthMaps
+from core.mapping.depth_consistency import DepthMaps
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal, oriented
 from core.mapping.support import read_sparse_model
 from core.mapping.surface import Surface

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.io.annotations import read_rows, write_rows
-from core.json_files import read_json, write_json
+from core.json_files import JsonObject, read_json, write_json
 from core.mapping.confidence import Parts
 from core.scene.detection import DetectionRow, Outcome
 
@@ -50,7 +50,7 @@ def write_observations(folder: Path, observations: Sequence[Observation]) -> Non
     write_rows(folder, [one.row for one in observations])
     rows = []
     for one in observations:
-        parts = None if one.parts is None else {**asdict(one.parts), "lead": _finite(one.parts.lead)}
+        parts = None if one.parts is None else _written(one.parts)
         rows.append({"id": one.row.id, "sigma": one.sigma, "track_id": one.track_id, "parts": parts})
     write_json(folder / _PARTS, rows)
     kept = [_thinned(one.points) for one in observations]
@@ -71,9 +71,7 @@ def read_observations(folder: Path) -> list[Observation]:
         offsets, points, normal, radius = (data[name] for name in ("offsets", "points", "normal", "radius"))
     found = []
     for k, (row, extra) in enumerate(zip(rows, more, strict=True)):
-        parts = extra["parts"]
-        if parts is not None:
-            parts = Parts(**{**parts, "lead": float("inf") if parts["lead"] is None else parts["lead"]})
+        parts = None if extra["parts"] is None else _read(extra["parts"])
         found.append(
             Observation(
                 row,
@@ -90,8 +88,17 @@ def read_observations(folder: Path) -> list[Observation]:
     return found
 
 
-def _finite(value: float) -> float | None:
-    return None if value == float("inf") else value
+def _written(parts: Parts) -> JsonObject:
+    """The form in the file: infinity is null, and the model's warnings bear the name that they had first."""
+    row = asdict(parts)
+    warnings = row.pop("model_warnings")
+    return {**row, "lead": None if parts.lead == float("inf") else parts.lead, "doubts": warnings}
+
+
+def _read(row: JsonObject) -> Parts:
+    own = {name: value for name, value in row.items() if name != "doubts"}
+    lead = float("inf") if row["lead"] is None else row["lead"]
+    return Parts(**{**own, "lead": lead, "model_warnings": row["doubts"]})
 
 
 def _thinned(points: F64) -> F64:

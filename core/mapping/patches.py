@@ -58,7 +58,7 @@ def split_patches(samples: Footprint, origin: F64, directions: F64, hits: Hits, 
         samples: the pixels that were cast.
         origin: (3,) projection centre.
         directions: (n, 3) unit rays of the samples.
-        hits: where they met the surface; those on the back of a face are no sight of it.
+        hits: where they met the surface; those on the back of a face do not count.
         spacing: of the fused cloud: steps in depth below two of it are no edges.
     """
     good = np.flatnonzero(hits.hit & (hits.cosine > 0))

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from core.geometry.pose import transform
 from core.mapping.consensus import LookedAt
-from core.mapping.depth_witness import DepthMaps
+from core.mapping.depth_consistency import DepthMaps
 from core.mapping.sigma import PoseCovariance, pose_covariance
 from core.mapping.support import Observations
 from core.mapping.surface import Surface

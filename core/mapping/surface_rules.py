@@ -1,4 +1,4 @@
-"""The placement of detections by casting, with lower rungs for those that the surface or the pose fails."""
+"""The placement of detections by casting, with fallback methods for those that the surface or the pose fails."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from core.geometry.boxes import in_box
 from core.geometry.pose import transform
-from core.mapping.casting import Cast, Missed, Sight, cast_sights
-from core.mapping.ladder import (
+from core.mapping.casting import Cast, Missed, RayBundle, cast_bundles
+from core.mapping.fallback_methods import (
     MAX_ERROR_PX,
     Estimate,
     between,
@@ -79,9 +79,9 @@ def place_on_surface(
         matches: verified matches of a frame that has no pose.
         reach_s: how far in time a pose may be interpolated.
     """
-    sights: dict[int, Sight] = {}
+    bundles: dict[int, RayBundle] = {}
     observations: dict[int, Observation] = {}
-    estimated: dict[int, tuple[Sight, PlacementMethod, Reason]] = {}
+    estimated: dict[int, tuple[RayBundle, PlacementMethod, Reason]] = {}
     for number, detection in enumerate(detections):
         samples = _samples(detection, scene)
         index = None if detection.source is None else frames.index_of_source.get(detection.source)
@@ -91,7 +91,7 @@ def place_on_surface(
         elif not len(samples.xy):
             observations[number] = _without(unplaced_row(detection, Reason.OUTSIDE_ROI, index), detection)
         elif view is not None:
-            sights[number] = _sight(number, detection, samples, scene, view)
+            bundles[number] = _bundle(number, detection, samples, scene, view)
         else:
             reason = Reason.NO_REGISTERED_VIEW if index is None else Reason.FRAME_NOT_REGISTERED
             found = _without_pose(number, detection, samples, index, scene, frames, matches, reach_s)
@@ -99,7 +99,7 @@ def place_on_surface(
                 observations[number] = _without(unplaced_row(detection, reason, index), detection)
             else:
                 estimated[number] = (*found, reason)
-    observations |= _registered(detections, scene, sights)
+    observations |= _registered(detections, scene, bundles)
     observations |= _estimates(detections, scene, estimated, frames)
     return [observations[number] for number in range(len(detections))]
 
@@ -114,24 +114,26 @@ def _samples(detection: Detection, scene: Scene) -> Footprint:
     return footprint(box, crop.width, crop.height, polygon)
 
 
-def _sight(number: int, detection: Detection, samples: Footprint, scene: Scene, view: int) -> Sight:
+def _bundle(number: int, detection: Detection, samples: Footprint, scene: Scene, view: int) -> RayBundle:
     box = box_in_crop_px(detection.box, scene.crop, "source")
     views = scene.views
     center, R, frame = views.centers[view], views.R[view], int(views.frame_index[view])
-    return Sight(number, detection.label, detection.score, box, samples, center, R, view, frame)
+    return RayBundle(number, detection.label, detection.score, box, samples, center, R, view, frame)
 
 
-def _registered(detections: Sequence[Detection], scene: Scene, sights: Mapping[int, Sight]) -> dict[int, Observation]:
+def _registered(
+    detections: Sequence[Detection], scene: Scene, bundles: Mapping[int, RayBundle]
+) -> dict[int, Observation]:
     """Mapped where the surface was met; else the depth map, then the sparse points, as estimates."""
     found: dict[int, Observation] = {}
-    for (number, sight), cast in zip(sights.items(), cast_sights(scene, list(sights.values())), strict=True):
+    for (number, bundle), cast in zip(bundles.items(), cast_bundles(scene, list(bundles.values())), strict=True):
         detection = detections[number]
-        assert sight.view is not None
-        frame = int(scene.views.frame_index[sight.view])
+        assert bundle.view is not None
+        frame = int(scene.views.frame_index[bundle.view])
         if isinstance(cast, Cast):
             found[number] = _cast_observation(detection, frame, cast, scene)
             continue
-        estimate = from_depth_map(scene, sight) or from_sparse_points(scene, sight)
+        estimate = from_depth_map(scene, bundle) or from_sparse_points(scene, bundle)
         found[number] = _estimate_observation(detection, frame, estimate, cast.reason, scene)
     return found
 
@@ -158,7 +160,7 @@ def _estimate_observation(
 ) -> Observation:
     if estimate is None:
         return _without(unplaced_row(detection, reason, frame), detection)
-    row = approximate_row(detection, frame, estimate.place.tolist(), estimate.rung, reason, scene.model)
+    row = approximate_row(detection, frame, estimate.place.tolist(), estimate.method, reason, scene.model)
     return replace(_without(row, detection), sigma=estimate.sigma)
 
 
@@ -171,15 +173,15 @@ def _without_pose(
     frames: RunFrames,
     matches: Matches,
     reach_s: float,
-) -> tuple[Sight, PlacementMethod] | None:
-    """A sight from a registered neighbour that shows the same pixels, else from a pose between two of them."""
-    sight = _sight_like(number, detection, samples, scene, frames)
+) -> tuple[RayBundle, PlacementMethod] | None:
+    """A ray bundle from a registered neighbour that shows the same pixels, else from a pose between two of them."""
+    bundle = _bundle_without_pose(number, detection, samples, scene, frames)
     if index is not None:
         for other, own_xy, other_xy in matches(index):
             view = scene.views.row(other)
-            carried = None if view is None else carried_over(own_xy, other_xy, sight.box_px)
+            carried = None if view is None else carried_over(own_xy, other_xy, bundle.box_px)
             if view is not None and carried is not None:
-                moved = _moved(sight, carried, scene, view)
+                moved = _moved(bundle, carried, scene, view)
                 if len(moved.samples.xy):
                     return moved, PlacementMethod.PROPAGATED
     view_times = np.array([frames.moment_of_index[int(i)] for i in scene.views.frame_index])
@@ -187,47 +189,49 @@ def _without_pose(
     if pose is None or pose[2] > MAX_ERROR_PX:
         return None
     R, center, _ = pose
-    return replace(sight, R=R, origin=center), PlacementMethod.INTERPOLATED
+    return replace(bundle, R=R, origin=center), PlacementMethod.INTERPOLATED
 
 
-def _sight_like(number: int, detection: Detection, samples: Footprint, scene: Scene, frames: RunFrames) -> Sight:
-    """A sight that still lacks its pose."""
+def _bundle_without_pose(
+    number: int, detection: Detection, samples: Footprint, scene: Scene, frames: RunFrames
+) -> RayBundle:
+    """A ray bundle that still lacks its pose."""
     box = box_in_crop_px(detection.box, scene.crop, "source")
     registered = scene.views.frame_index.tolist()
     near = min(registered, key=lambda frame: abs(frames.moment_of_index[frame] - detection.moment_s), default=-1)
-    return Sight(number, detection.label, detection.score, box, samples, np.zeros(3), np.eye(3), None, near)
+    return RayBundle(number, detection.label, detection.score, box, samples, np.zeros(3), np.eye(3), None, near)
 
 
-def _moved(sight: Sight, carried: F64, scene: Scene, view: int) -> Sight:
+def _moved(bundle: RayBundle, carried: F64, scene: Scene, view: int) -> RayBundle:
     """The same pixels in a registered view."""
-    xy = transform(sight.samples.xy, carried[:, :2], carried[:, 2])
+    xy = transform(bundle.samples.xy, carried[:, :2], carried[:, 2])
     inside = in_box(xy, (0, 0, scene.crop.width, scene.crop.height), border=False)
-    samples = replace(sight.samples, xy=xy[inside], cell=sight.samples.cell[inside])
-    x1, y1, x2, y2 = sight.box_px
+    samples = replace(bundle.samples, xy=xy[inside], cell=bundle.samples.cell[inside])
+    x1, y1, x2, y2 = bundle.box_px
     corners = transform(np.array([[x1, y1], [x2, y1], [x1, y2], [x2, y2]]), carried[:, :2], carried[:, 2])
     low, high = corners.min(axis=0), corners.max(axis=0)
     box = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
     return replace(
-        sight, samples=samples, box_px=box, origin=scene.views.centers[view], R=scene.views.R[view], view=view
+        bundle, samples=samples, box_px=box, origin=scene.views.centers[view], R=scene.views.R[view], view=view
     )
 
 
 def _estimates(
     detections: Sequence[Detection],
     scene: Scene,
-    estimated: Mapping[int, tuple[Sight, PlacementMethod, Reason]],
+    estimated: Mapping[int, tuple[RayBundle, PlacementMethod, Reason]],
     frames: RunFrames,
 ) -> dict[int, Observation]:
-    """Sights with a pose that is not their own, cast in the same way and marked as estimates."""
+    """Ray bundles with a pose that is not their own, cast in the same way and marked as estimates."""
     found: dict[int, Observation] = {}
-    results = cast_sights(scene, [sight for sight, _, _ in estimated.values()])
-    for (number, (_, rung, reason)), cast in zip(estimated.items(), results, strict=True):
+    results = cast_bundles(scene, [bundle for bundle, _, _ in estimated.values()])
+    for (number, (_, method, reason)), cast in zip(estimated.items(), results, strict=True):
         detection = detections[number]
         index = None if detection.source is None else frames.index_of_source.get(detection.source)
         if isinstance(cast, Missed):
             found[number] = _without(unplaced_row(detection, reason, index), detection)
         else:
-            row = approximate_row(detection, index, cast.place.tolist(), rung, reason, scene.model)
+            row = approximate_row(detection, index, cast.place.tolist(), method, reason, scene.model)
             found[number] = replace(_without(row, detection), sigma=2.0 * cast.sigma, radius=cast.patch.radius)
     return found
 

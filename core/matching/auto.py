@@ -28,7 +28,7 @@ JUMP_AFTER = 3
 across it: the nearest of all and the two next to it."""
 
 
-class Patience:
+class RematchPolicy:
     """Which pairs are worth LightGlue, by what came of it so far.
 
     A black frame would be tried with all its neighbours, and a jump of the picture with all pairs across it. Nearest
@@ -44,7 +44,7 @@ class Patience:
         self._joined: set[int] = set()
         """Frames k such that a strong pair joins k or one before it with one after it."""
 
-    def has_run_out(self, pair: tuple[int, int]) -> bool:
+    def gives_up(self, pair: tuple[int, int]) -> bool:
         """Whether one of the frames, or a place of the sequence between them, has been tried often enough."""
         if any(frame not in self._matched and self._in_vain[frame] >= GIVE_UP_AFTER for frame in pair):
             return True

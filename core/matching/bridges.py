@@ -1,7 +1,7 @@
 """Pairs beyond the sequence, sought where the view graph is thin: over a dark or blurred stretch, or a jump.
 
 What such a pair says is believed only together with others. Blades look alike, so one verified pair may join two
-different ones; pairs that join the same two pieces must agree on how these are turned to each other.
+different ones; pairs that join the same two components must agree on how these are turned to each other.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ THIN_SHARE = 0.2
 MIN_DEGREE = 2
 """Strong pairs of a frame that is worth matching further: a black one has none."""
 SIDE = 6
-"""Frames on either side of a gap, each matched with each; between two pieces all of them are tried."""
-PIECE_FRAMES = 8
-"""Pieces of the graph with fewer frames are not sought out."""
-PIECE_SIDE = 5
-"""Frames spread over each of two pieces, each matched with each."""
-MAX_PIECES = 4
+"""Frames on either side of a gap, each matched with each; between two components all of them are tried."""
+COMPONENT_FRAMES = 8
+"""Components of the graph with fewer frames are not sought out."""
+COMPONENT_SIDE = 5
+"""Frames spread over each of two components, each matched with each."""
+MAX_COMPONENTS = 4
 MAX_PAIRS = 300
 PROBES = 6
-"""Inside a piece, and of pairs spread over two, those that are tried first; the others only if one of these holds."""
+"""Pairs inside a component, or spread over two, that are tried first; the others only if one of these holds."""
 AGREE_DEG = 4.0
 MIN_AGREEING = 3
-"""Pairs that must agree before they join two pieces; the motion before and after counts as one of them."""
+"""Pairs that must agree before they join two components; the motion before and after counts as one of them."""
 MOTION_FRAMES = 10
 """Frames before and after a gap that say how fast the view turns there."""
 
@@ -66,7 +66,7 @@ def find_gaps(table: PairTable, n_search: int) -> list[tuple[int, int]]:
 
 
 def components_of(table: PairTable, n_frames: int) -> I64:
-    """(n_frames,) number of the piece that strong pairs join each frame into."""
+    """(n_frames,) number of the component that strong pairs join each frame into."""
     first, second = table.pairs[is_strong(table)].T
     links = coo_matrix((np.ones(len(first), np.int8), (first, second)), shape=(n_frames, n_frames))
     labels: I64 = connected_components(links, directed=False)[1].astype(np.int64)
@@ -88,19 +88,21 @@ class Place:
 def bridge_places(table: PairTable, n_search: int) -> list[Place]:
     """Further pairs worth trying, at most `MAX_PAIRS` in all; no pair occurs twice.
 
-    The places are, in this order: the gaps between two pieces, those of the largest pieces first; thin places inside
-    a piece; every two of the large pieces, at frames spread over them.
+    The places are, in this order: the gaps between two components, those of the largest components first; thin places
+    inside a component; every two of the large components, at frames spread over them.
     """
     degree = np.bincount(table.pairs[is_strong(table)].ravel(), minlength=n_search)[:n_search]
     usable = np.flatnonzero(degree >= MIN_DEGREE)
     labels = components_of(table, n_search)
-    pieces = [usable[labels[usable] == label] for label in np.unique(labels[usable])]
-    wanted = [_near(left[-SIDE:], right[:SIDE]) for left, right in facing(pieces)]
+    components = [usable[labels[usable] == label] for label in np.unique(labels[usable])]
+    wanted = [_near(left[-SIDE:], right[:SIDE]) for left, right in facing(components)]
     for before, after in find_gaps(table, n_search):
         left, right = usable[usable <= before][-SIDE:], usable[usable >= after][:SIDE]
         if len(left) and len(right) and labels[left[-1]] == labels[right[0]]:
             wanted.append(_near(left, right, PROBES))
-    large = sorted((piece for piece in pieces if len(piece) >= PIECE_FRAMES), key=len, reverse=True)[:MAX_PIECES]
+    large = sorted(
+        (component for component in components if len(component) >= COMPONENT_FRAMES), key=len, reverse=True
+    )[:MAX_COMPONENTS]
     for row, one in enumerate(large):
         wanted += [_near(_spread(one), _spread(other), PROBES) for other in large[row + 1 :]]
     known = {(int(a), int(b)) for a, b in table.pairs}
@@ -113,24 +115,24 @@ def bridge_places(table: PairTable, n_search: int) -> list[Place]:
     return places
 
 
-def facing(pieces: Sequence[I64]) -> list[tuple[I64, I64]]:
-    """Every two pieces with none between them as large as the smaller, the earlier first in each.
+def facing(components: Sequence[I64]) -> list[tuple[I64, I64]]:
+    """Every two components with none between them as large as the smaller, the earlier first in each.
 
-    A dark stretch verifies within itself and is a piece: the light before it faces the light after it all the same.
+    A dark stretch verifies within itself and is a component: the light before it faces the light after it all the same.
 
     Args:
-        pieces: frames of each, rising; the pieces in the order of their first frames.
+        components: frames of each, rising; the components in the order of their first frames.
 
     Returns:
-        those of the largest pieces first, of equals the earliest.
+        those of the largest components first, of equals the earliest.
     """
     found = [
         (one, other)
-        for row, one in enumerate(pieces)
-        for column, other in enumerate(pieces[row + 1 :], row + 1)
-        if all(len(between) < min(len(one), len(other)) for between in pieces[row + 1 : column])
+        for row, one in enumerate(components)
+        for column, other in enumerate(components[row + 1 :], row + 1)
+        if all(len(between) < min(len(one), len(other)) for between in components[row + 1 : column])
     ]
-    return sorted(found, key=lambda two: -min(len(piece) for piece in two))
+    return sorted(found, key=lambda two: -min(len(component) for component in two))
 
 
 def _near(one: I64, other: I64, probes: int = MAX_PAIRS) -> Place:
@@ -140,16 +142,17 @@ def _near(one: I64, other: I64, probes: int = MAX_PAIRS) -> Place:
 
 
 def _spread(frames: I64) -> I64:
-    rows = np.linspace(0, len(frames) - 1, min(PIECE_SIDE, len(frames))).round().astype(int)
+    rows = np.linspace(0, len(frames) - 1, min(COMPONENT_SIDE, len(frames))).round().astype(int)
     return np.asarray(frames[np.unique(rows)], np.int64)
 
 
 def agreeing(table: PairTable, extra: PairTable, n_frames: int, n_search: int) -> Bool:
     """(m,) which pairs of `extra` to believe.
 
-    Those within one piece of `table` are. Between two pieces, the rotations measured along the sequence carry every
-    pair to one rotation between the pieces; the largest group that agrees on it is believed if it is most of them and
-    has `MIN_AGREEING` members, of which the motion before and after the gap is one where it leads to the same rotation.
+    Those within one component of `table` are. Between two components, the rotations measured along the sequence carry
+    every pair to one rotation between the components; the largest group that agrees on it is believed if it is most of
+    them and has `MIN_AGREEING` members, of which the motion before and after the gap is one where it leads to the same
+    rotation.
 
     Args:
         table: pairs of the sequence.
@@ -166,19 +169,19 @@ def agreeing(table: PairTable, extra: PairTable, n_frames: int, n_search: int) -
     joins = np.sort(ends, axis=1)
     for join in np.unique(joins[across], axis=0):
         rows = np.flatnonzero(across & (joins == join).all(axis=1))
-        said = _between_pieces(extra, rows, labels, turned)
+        said = _between_components(extra, rows, labels, turned)
         group = _largest_group(said)
         foreseen = _by_motion(join, labels[:n_search], turned)
-        witness = foreseen is not None and _apart_deg(foreseen, said[group[0]]) <= AGREE_DEG
-        if len(group) + witness >= MIN_AGREEING and 2 * len(group) > len(rows):
+        confirmed = foreseen is not None and _apart_deg(foreseen, said[group[0]]) <= AGREE_DEG
+        if len(group) + confirmed >= MIN_AGREEING and 2 * len(group) > len(rows):
             believed[rows[group]] = True
     return believed
 
 
 def _by_motion(join: I64, labels: I64, turned: Sequence[Rotation]) -> Rotation | None:
-    """How the piece with the higher label is turned against the other, if the view went on turning over the gap.
+    """How the component with the higher label is turned against the other, if the view went on turning over the gap.
 
-    None where the pieces do not follow each other, one of them is too short, or the view does not turn alike before
+    None where the components do not follow each other, one of them is too short, or the view does not turn alike before
     and after.
     """
     early, late = sorted(
@@ -205,7 +208,7 @@ def _apart_deg(one: Rotation, other: Rotation) -> float:
 
 
 def _rotations(table: PairTable, labels: I64) -> list[Rotation]:
-    """Rotation of every frame against the first of its piece, chained over the pairs with most inliers."""
+    """Rotation of every frame against the first of its component, chained over the pairs with most inliers."""
     strong = np.flatnonzero(is_strong(table))
     n = len(labels)
     first, second = table.pairs[strong].T
@@ -226,8 +229,8 @@ def _rotations(table: PairTable, labels: I64) -> list[Rotation]:
     return found
 
 
-def _between_pieces(extra: PairTable, rows: I64, labels: I64, turned: Sequence[Rotation]) -> list[Rotation]:
-    """What each pair says of how the piece with the higher label is turned against that with the lower."""
+def _between_components(extra: PairTable, rows: I64, labels: I64, turned: Sequence[Rotation]) -> list[Rotation]:
+    """What each pair says of how the component with the higher label is turned against that with the lower."""
     found = []
     for row in rows:
         first, second = (int(frame) for frame in extra.pairs[row])

@@ -39,9 +39,9 @@ class SizeView:
     """cos(angle of incidence) / squared distance: pixels that it spends on the place."""
     pixel_su: float
     """Length that a pixel across the line of sight covers at the place, scene units."""
-    sight_length: float
+    projected_length: float
     """Largest extent of the outline at the distance of the place, across the line of sight, scene units."""
-    sight_width: float
+    projected_width: float
     """Its extent across that."""
     depth_share: float
     """Standard deviation of the distance of the view from the place over that distance, by its pose."""
@@ -75,7 +75,7 @@ def signed_distance(xy: F64, polygon: F64) -> F64:
 
 
 def levels(patch: SurfacePatch, scene: Scene, views: list[SizeView]) -> F64:
-    """(v, n) how far each vertex of a patch lies inside the outline of each view, scene units across its sight.
+    """(v, n) how far each vertex of a patch lies inside the outline of each view, scene units across its line of sight.
 
     Positive inside, negative outside, NaN where the view does not see the vertex.
     """

@@ -104,7 +104,7 @@ def _between_points(
     length = float(np.linalg.norm(between))
     if length <= 2.0 * scene.spacing:
         return "the pixels told show one place"
-    # Of a pixel: across the sight by the pointing, along it by how steep the surface is, and by the surface itself.
+    # Of a pixel: across the line of sight by the pointing, along it by the slope of the surface, and by the surface.
     along = np.abs(rays @ (between / length))
     cosine = np.clip(np.abs(hits.cosine), MIN_COSINE, 1.0)
     across = POINTING_PX * hits.distance / scene.focal_px

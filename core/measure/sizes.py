@@ -122,8 +122,8 @@ def _measure(
     seen = [
         _Seen(
             view,
-            max(region.straight.length, view.sight_length),
-            max(region.straight.width, view.sight_width),
+            max(region.straight.length, view.projected_length),
+            max(region.straight.width, view.projected_width),
             region.area,
         )
         for view, region in zip(used, regions, strict=True)
@@ -185,8 +185,8 @@ def _views(own: Sequence[Observation], place: F64, detections: Mapping[int, Dete
         cosine = max(float(towards @ one.normal) / max(distance, 1e-300), 0.05)
         outline, is_mask = _outline(detection, scene)
         pixel = distance / scene.focal_px
-        in_sight = distance * scene.views.rays(outline, scene.views.R[view])
-        extents = straight_extents(in_sight, towards / max(distance, 1e-300))
+        on_outline = distance * scene.views.rays(outline, scene.views.R[view])
+        extents = straight_extents(on_outline, towards / max(distance, 1e-300))
         grown = 2.0 * MASK_BORDER_PX * pixel if is_mask else 0.0
         found.append(
             SizeView(
@@ -196,8 +196,8 @@ def _views(own: Sequence[Observation], place: F64, detections: Mapping[int, Dete
                 is_mask=is_mask,
                 weight=cosine / distance**2,
                 pixel_su=pixel,
-                sight_length=extents.length + grown,
-                sight_width=extents.width + grown,
+                projected_length=extents.length + grown,
+                projected_width=extents.width + grown,
                 depth_share=_depth_share(scene, view, distance),
             )
         )
@@ -265,7 +265,7 @@ def _sigmas(
     views = [one.view for one in seen]
     shape = 0.0
     if not views[0].is_mask:
-        slant = max(0.0, value - float(np.median([view.sight_length for view in views])))
+        slant = max(0.0, value - float(np.median([view.projected_length for view in views])))
         shape = together(box_shape * value, BOX_SLANT * slant)
     return together(spread, common, shape), value * _common_depth(views), spacing
 

@@ -12,7 +12,7 @@ from core.io.timeline import read_defects, read_events
 from core.report.record import RunTables
 from core.scene.detection import DetectionRow, Outcome
 from core.scene.frame import RunFrames
-from core.task_key import key_of, piece_of, stage_of
+from core.task_key import key_of, stage_of, submodel_of
 
 _RANK = {Outcome.MAPPED: 0, Outcome.APPROXIMATE: 1, Outcome.UNPLACED: 2}
 """Outcomes in the order in which a model's row counts."""
@@ -37,11 +37,11 @@ def join_detections(tables: Sequence[Sequence[DetectionRow]]) -> list[DetectionR
 T = TypeVar("T")
 
 
-def served_pieces(keys: Collection[str]) -> list[int]:
+def served_submodels(keys: Collection[str]) -> list[int]:
     """Numbers of the further models that came to their end, by the keys of the finished tasks."""
     if "timeline" not in keys:
         return []
-    return sorted(piece_of(key) for key in keys if stage_of(key) == "timeline" and piece_of(key))
+    return sorted(submodel_of(key) for key in keys if stage_of(key) == "timeline" and submodel_of(key))
 
 
 def load_tables(folders: Mapping[str, Path]) -> RunTables:
@@ -54,8 +54,8 @@ def load_tables(folders: Mapping[str, Path]) -> RunTables:
         except FileNotFoundError:
             return None
 
-    further = served_pieces(folders)
-    timelines = [key_of("timeline", piece) for piece in (0, *further)]
+    further = served_submodels(folders)
+    timelines = [key_of("timeline", submodel) for submodel in (0, *further)]
     mapped = [table(key, read_rows) for key in timelines]
     rows = table("map_defects", read_rows) if mapped[0] is None else mapped[0]
     if further:
@@ -64,7 +64,7 @@ def load_tables(folders: Mapping[str, Path]) -> RunTables:
         detections=table("annotations", read_detections) or [],
         frames=table("frames", read_frames) or RunFrames(()),
         registered=table("extend", read_registered) or [],
-        registered_further={piece: table(key_of("extend", piece), read_registered) or [] for piece in further},
+        registered_further={submodel: table(key_of("extend", submodel), read_registered) or [] for submodel in further},
         mapped_rows=rows,
         timeline=[event for key in timelines for event in table(key, read_events) or ()],
         defects=[record for key in timelines for record in table(key, read_defects) or ()],

@@ -12,7 +12,7 @@ from core.scene.defect import DefectRecord, least_defects
 from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
 from core.stage_specs import STAGES
 from core.states import RunState, TaskState
-from core.task_key import key_of, piece_of
+from core.task_key import key_of, submodel_of
 
 _NAMES = tuple(STAGES)
 AFTER_MODEL = frozenset(_NAMES[_NAMES.index("extend") + 1 :])
@@ -38,13 +38,13 @@ def missing_parts(record: RunRecord) -> list[Flag]:
 def _failed_after_model(record: RunRecord, task: TaskRecord) -> bool:
     """A further model that never came to be is no loss; one that lost its surface is."""
     after = task.state == TaskState.FAILED and task.stage in AFTER_MODEL
-    return after and bool(record.facts(key_of("extend", piece_of(task.key))))
+    return after and bool(record.facts(key_of("extend", submodel_of(task.key))))
 
 
 def _failed(task: TaskRecord) -> Flag:
-    piece = piece_of(task.key)
+    submodel = submodel_of(task.key)
     where = f"{task.stage}: {task.reason or 'failed'}"
-    return Flag("incomplete", Severity.WARNING, where=f"model {piece}, {where}" if piece else where)
+    return Flag("incomplete", Severity.WARNING, where=f"model {submodel}, {where}" if submodel else where)
 
 
 def _nothing_placed(record: RunRecord) -> list[Flag]:

@@ -13,7 +13,7 @@ from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.scene.case import CaseKind, CaseRow
 from core.scene.detection import DetectionRow, Outcome
-from core.task_key import key_of, part_of, piece_of
+from core.task_key import key_of, part_of, submodel_of
 from core.thesis.search import refinement_gain, spread, weak_cases
 from core.thesis.tables import thesis_tables
 
@@ -31,10 +31,10 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     if still is not None:
         flags.append(still)
     for task in record.tasks:
-        piece = piece_of(task.key)
+        submodel = submodel_of(task.key)
         for row in [*_flags_that_count(record, task), *_checks_that_count(record, task)]:
             flag = Flag.from_dict(row)
-            flags.append(replace(flag, where=f"model {piece}, {flag.where}") if piece else flag)
+            flags.append(replace(flag, where=f"model {submodel}, {flag.where}") if submodel else flag)
     unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
     return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
 

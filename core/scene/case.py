@@ -14,9 +14,9 @@ class CaseKind(StrEnum):
     COARSE = "coarse"
     REFINE = "refine"
     SECTION = "section"
-    """Of the frames between places that a check found wrong, after every other case was vetoed."""
+    """Of the frames between places that a check found wrong, after every other case was rejected."""
     PERSPECTIVE = "perspective"
-    """Of a perspective lens, after every case of the fisheye lens was vetoed, the parts too."""
+    """Of a perspective lens, after every case of the fisheye lens was rejected, the parts too."""
 
 
 REDUCERS = ("reduce_perspective", "reduce_parts", "reduce_refine", "reduce_coarse")

@@ -51,7 +51,7 @@ def case_checks(result: CaseResult, case: Case) -> list[Flag]:
 
 
 def trust_facts(flags: list[Flag]) -> Facts:
-    """Facts `checks` and `vetoed`: a finding of severity `error` vetoes a case."""
+    """Facts `checks` and `vetoed`: a finding of severity `error` rejects a case."""
     return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == Severity.ERROR)}
 
 

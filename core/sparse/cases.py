@@ -63,7 +63,7 @@ def confirmed_or_searched(
     progress: Progress | None = None,
     is_wrong: Callable[[pycolmap.Reconstruction], bool] | None = None,
 ) -> tuple[pycolmap.Reconstruction, Kept]:
-    """The model to go on with and which one it is; a confirmed model that `is_wrong` vetoes is not gone on with."""
+    """The model to go on with and which one it is; a confirmed model that `is_wrong` rejects is not gone on with."""
     confirmed = confirm(case, progress)
     if confirmed is None or choose(model_stats(searched), model_stats(confirmed)) == "searched":
         return searched, "searched"

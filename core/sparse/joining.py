@@ -1,7 +1,7 @@
 """Pieces that registration left over, joined to the model through images that both have.
 
 The similarity between two models is fitted on every other shared image and must hold on those left out. A joined model
-that the checks veto, or that is not better supported than its parts, is not used.
+that the checks reject, or that is not better supported than its parts, is not used.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from core.settings.groups import MapperSettings
 from core.sparse.cases import MIN_MATCHES, Case, run_case
 from core.sparse.densify import densify, transfer_poses
 from core.sparse.mapper import mapper_options, open_cache
-from core.sparse.pieces import groups_of
+from core.sparse.submodels import groups_of
 from core.sparse.tracks import build_tracks
 from core.sparse.view_graph import read_frames
 from core.viewgraph import PairTable, database_of
@@ -30,7 +30,7 @@ from core.viewgraph import PairTable, database_of
 F64 = NDArray[np.float64]
 
 OVERLAP = 12
-"""Frames beside a piece that are mapped with it: those that the model has are shared."""
+"""Frames beside a submodel that are mapped with it: those that the model has are shared."""
 MIN_SHARED = 6
 """Fewer shared images do not fix a similarity that can be checked on images left out."""
 MAX_TURN_DEG = 2.0
@@ -47,7 +47,7 @@ _NO_MODEL: Outcome = "no_model"
 
 @dataclass(frozen=True)
 class Attempt:
-    """What became of a piece."""
+    """What became of a submodel."""
 
     first_frame: int
     last_frame: int
@@ -129,7 +129,7 @@ def join_rest(
     is_wrong: Callable[[pycolmap.Reconstruction], bool],
     threads: int = 1,
 ) -> tuple[pycolmap.Reconstruction, list[Attempt]]:
-    """`model` with every left-over piece that can be joined to it, and what became of each.
+    """`model` with every left-over submodel that can be joined to it, and what became of each.
 
     Args:
         graph: result folder of stage `graph`.
@@ -138,7 +138,7 @@ def join_rest(
         n_frames: frames in the database.
         settings: of the mapper.
         seed: of its random choices.
-        is_wrong: veto of the checks.
+        is_wrong: rejection by the checks.
         threads: of the bundle adjustment.
     """
     left = np.ones(n_frames, bool)
@@ -147,10 +147,10 @@ def join_rest(
     for group in groups_of(table, left):
         low, high = int(group.min()), int(group.max())
         window = max(0, low - OVERLAP), min(n_frames, high + 1 + OVERLAP)
-        piece = run_case(Case(graph, *window, settings, seed)).model
+        submodel = run_case(Case(graph, *window, settings, seed)).model
         shared, outcome = 0, _NO_MODEL
-        if piece is not None:
-            model, shared, outcome = _join(graph, model, piece, table, n_frames, settings, seed, is_wrong, threads)
+        if submodel is not None:
+            model, shared, outcome = _join(graph, model, submodel, table, n_frames, settings, seed, is_wrong, threads)
         attempts.append(Attempt(low, high, shared, outcome))
     return model, attempts
 
@@ -158,7 +158,7 @@ def join_rest(
 def _join(
     graph: Path,
     model: pycolmap.Reconstruction,
-    piece: pycolmap.Reconstruction,
+    submodel: pycolmap.Reconstruction,
     table: PairTable,
     n_frames: int,
     settings: MapperSettings,
@@ -166,15 +166,15 @@ def _join(
     is_wrong: Callable[[pycolmap.Reconstruction], bool],
     threads: int,
 ) -> tuple[pycolmap.Reconstruction, int, Outcome]:
-    shared = sorted(set(model.reg_image_ids()) & set(piece.reg_image_ids()))
+    shared = sorted(set(model.reg_image_ids()) & set(submodel.reg_image_ids()))
     if len(shared) < MIN_SHARED:
         return model, len(shared), "no_shared_images"
-    first, second = poses_of(model, shared), poses_of(piece, shared)
+    first, second = poses_of(model, shared), poses_of(submodel, shared)
     even, odd = slice(0, None, 2), slice(1, None, 2)
     if not holds(fit_similarity(first.rows(even), second.rows(even)), first.rows(odd), second.rows(odd)):
         return model, len(shared), "disagree"
     cache = open_cache(database_of(graph), (), MIN_MATCHES)
-    together = _with_poses(cache, model, piece, fit_similarity(first, second))
+    together = _with_poses(cache, model, submodel, fit_similarity(first, second))
     options = mapper_options(settings, threads=threads, seed=seed, tuned=True)
     joined = densify(cache, together, build_tracks(table), read_frames(database_of(graph), 0, n_frames), options)
     adjustment = pycolmap.BundleAdjustmentOptions()
@@ -182,7 +182,7 @@ def _join(
     adjustment.refine_focal_length = adjustment.refine_extra_params = settings.refine_lens
     adjustment.ceres.solver_options.num_threads = threads
     pycolmap.bundle_adjustment(joined, adjustment)
-    stats, parts = model_stats(joined), (model_stats(model), model_stats(piece))
+    stats, parts = model_stats(joined), (model_stats(model), model_stats(submodel))
     better = stats.registered_images > parts[0].registered_images
     better = better and stats.points3D >= max(part.points3D for part in parts)
     if not better:
@@ -193,14 +193,14 @@ def _join(
 def _with_poses(
     cache: pycolmap.DatabaseCache,
     model: pycolmap.Reconstruction,
-    piece: pycolmap.Reconstruction,
+    submodel: pycolmap.Reconstruction,
     similarity: Similarity,
 ) -> pycolmap.Reconstruction:
     """Copy of `model` without points, with the images that only `piece` has put into its frame."""
     together = transfer_poses(cache, model)
     camera_id = next(iter(together.cameras))
-    for image_id in sorted(set(piece.reg_image_ids()) - set(model.reg_image_ids())):
-        pose = piece.image(image_id).cam_from_world()
+    for image_id in sorted(set(submodel.reg_image_ids()) - set(model.reg_image_ids())):
+        pose = submodel.image(image_id).cam_from_world()
         rotation = pose.rotation.matrix() @ similarity.rotation.T
         shift = similarity.scale * np.asarray(pose.translation) - rotation @ similarity.shift
         image = together.image(image_id)

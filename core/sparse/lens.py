@@ -132,7 +132,7 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
         "agreement": agreement,
         "starts": [dict(start) for start in starts],
-        "flags": [] if settings.focal != "estimate" or is_told else _doubts(agreement, reason, starts),
+        "flags": [] if settings.focal != "estimate" or is_told else _warnings(agreement, reason, starts),
     }
 
 
@@ -184,7 +184,7 @@ def _ran_away_alone(chosen: Facts, starts: Sequence[Facts], source_width: int, m
     return hardly and len(starts) > 1 and len(_near(starts, float(chosen["focal_px"]))) <= 1
 
 
-def _doubts(agreement: float | None, reason: str, starts: Sequence[Facts]) -> list[FlagFields]:
+def _warnings(agreement: float | None, reason: str, starts: Sequence[Facts]) -> list[FlagFields]:
     """Flags of an estimate; without any usable start nothing agrees."""
     if reason == UNKNOWN:
         return [Flag(UNKNOWN, Severity.WARNING, where="camera").to_dict()]

@@ -1,6 +1,6 @@
 """The reducer's rule: which case wins, and why there may be none.
 
-Trust comes first: a case that a check vetoed loses against any that none did. Then the detections that its points
+Trust comes first: a case that a check rejected loses against any that none did. Then the detections that its points
 verify count (`core.mapping.support`; the final choice only), then the thesis's score (3.3.3).
 """
 
@@ -36,53 +36,53 @@ class Candidate:
 Standing = tuple[bool, int, tuple[int, int]]
 
 
-def standing(candidate: Candidate, veto: bool = True) -> Standing:
-    """What cases are ranked by: not vetoed before vetoed (unless `veto` is off), verified detections, the score."""
-    return not (veto and candidate.row.vetoed), candidate.verified or 0, candidate.row.score
+def standing(candidate: Candidate, reject: bool = True) -> Standing:
+    """What cases are ranked by: those not rejected (unless `reject` is off), verified detections, the score."""
+    return not (reject and candidate.row.vetoed), candidate.verified or 0, candidate.row.score
 
 
-def rank(candidates: Sequence[Candidate], veto: bool = True) -> list[Candidate]:
+def rank(candidates: Sequence[Candidate], reject: bool = True) -> list[Candidate]:
     """Cases that have a model, best first; equal ones keep the order of their names."""
     with_model = [candidate for candidate in candidates if candidate.row.succeeded]
     by_name = sorted(with_model, key=lambda candidate: candidate.name)
-    return sorted(by_name, key=lambda candidate: standing(candidate, veto), reverse=True)
+    return sorted(by_name, key=lambda candidate: standing(candidate, reject), reverse=True)
 
 
-def reduce_cases(candidates: Sequence[Candidate], veto: bool = True) -> JsonObject:
+def reduce_cases(candidates: Sequence[Candidate], reject: bool = True) -> JsonObject:
     """Facts of the reducer over the cases that ended.
 
-    A vetoed case can win here when all are: refinement may still find a model to trust around it.
+    A rejected case can win here when all are: refinement may still find a model to trust around it.
     Raises `NoReconstruction` with the reasons counted when no case has a model.
     """
-    ranking = rank(candidates, veto)
+    ranking = rank(candidates, reject)
     if not ranking:
         raise NoReconstruction(f"no case has a model: {_reasons(candidates)}", where="search")
     return _facts(ranking[0], ranking)
 
 
-def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], veto: bool = True) -> JsonObject:
+def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], reject: bool = True) -> JsonObject:
     """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
 
-    Verified detections are counted for all of them or for none. `vetoed` says that the winner is, which with `veto`
+    Verified detections are counted for all of them or for none. `vetoed` says that the winner is, which with `reject`
     means that every candidate is; `codes` are then those of the findings.
     """
-    ranking = rank(refined, veto)
-    better = ranking and standing(ranking[0], veto) > standing(coarse_best, veto)
+    ranking = rank(refined, reject)
+    better = ranking and standing(ranking[0], reject) > standing(coarse_best, reject)
     winner = ranking[0] if better else coarse_best
     others = [candidate for candidate in (*ranking, coarse_best) if candidate.name != winner.name]
-    ranked = [winner, *sorted(others, key=lambda candidate: standing(candidate, veto), reverse=True)]
+    ranked = [winner, *sorted(others, key=lambda candidate: standing(candidate, reject), reverse=True)]
     return {
         **_facts(winner, ranked),
-        "vetoed": not standing(winner, veto)[0],
+        "vetoed": not standing(winner, reject)[0],
         "codes": error_codes(winner.checks),
     }
 
 
-def reduce_parts(vetoed: JsonObject, parts: Sequence[Candidate]) -> JsonObject:
-    """Facts over the parts of a vetoed model: the one that verifies most detections wins, of equals the largest.
+def reduce_parts(rejected: JsonObject, parts: Sequence[Candidate]) -> JsonObject:
+    """Facts over the parts of a rejected model: the one that verifies most detections wins, of equals the largest.
 
     Args:
-        vetoed: facts of `reduce_refined`.
+        rejected: facts of `reduce_refined`.
         parts: cases of kind `part`, with verified detections or all without.
 
     Raises:
@@ -92,20 +92,20 @@ def reduce_parts(vetoed: JsonObject, parts: Sequence[Candidate]) -> JsonObject:
     if not ranking or ranking[0].row.vetoed:
         passed = f"; none of its {len(parts)} parts passes them" if parts else ""
         raise NoReconstruction(
-            f"every model was vetoed by the checks; the largest, {vetoed['best']}: {vetoed['codes']}{passed}",
+            f"every model was vetoed by the checks; the largest, {rejected['best']}: {rejected['codes']}{passed}",
             where="search",
         )
     row = ranking[0].row
-    where = f"frames {row.start}-{row.end - 1} of {vetoed['best']}, vetoed for {vetoed['codes']}"
+    where = f"frames {row.start}-{row.end - 1} of {rejected['best']}, vetoed for {rejected['codes']}"
     flag = Flag("parts_after_veto", Severity.WARNING, where=where)
     return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
 
 
-def reduce_perspective(vetoed: JsonObject, why: str, cases: Sequence[Candidate]) -> JsonObject:
+def reduce_perspective(rejected: JsonObject, why: str, cases: Sequence[Candidate]) -> JsonObject:
     """Facts over the cases of a perspective lens, of which the checks let the winner pass.
 
     Args:
-        vetoed: facts of `reduce_refined`.
+        rejected: facts of `reduce_refined`.
         why: what spoke against the fisheye lens, as a sentence without its full stop.
         cases: of kind `perspective`.
 
@@ -115,7 +115,7 @@ def reduce_perspective(vetoed: JsonObject, why: str, cases: Sequence[Candidate])
     ranking = rank(cases)
     if not ranking or ranking[0].row.vetoed:
         raise NoReconstruction(f"{why}; nor does a model of a perspective lens", where="search")
-    where = f"{vetoed['best']}, vetoed for {vetoed['codes']}"
+    where = f"{rejected['best']}, vetoed for {rejected['codes']}"
     flag = Flag("perspective_after_veto", Severity.WARNING, where=where)
     return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
 

@@ -101,7 +101,7 @@ def _solve(offsets: I64, row: I64, rays: F64, centers: F64, max_error: float, ma
         pending[bad] = np.bincount(track[kept], minlength=n)[bad] >= MIN_LENGTH
         points[bad[~pending[bad]]] = np.nan
     count = np.bincount(track[kept], minlength=n)
-    points[(count < MIN_LENGTH) | (_cosine_of_opening(track, row, kept, points, centers) >= max_cosine)] = np.nan
+    points[(count < MIN_LENGTH) | (_cosine_of_intersection(track, row, kept, points, centers) >= max_cosine)] = np.nan
     return points, kept & np.isfinite(points[track, 0])
 
 
@@ -138,7 +138,7 @@ def _toward(points: F64, centers: F64) -> F64:
     return unit
 
 
-def _cosine_of_opening(track: I64, row: I64, kept: Bool, points: F64, centers: F64) -> F64:
+def _cosine_of_intersection(track: I64, row: I64, kept: Bool, points: F64, centers: F64) -> F64:
     """Cosine of the angle (n,) under which the kept views of each point lie apart; 1 for points without views.
 
     Measured from the view that is farthest from the first one, to which the widest pair of a path nearly belongs.

@@ -49,7 +49,7 @@ def run(task: StageTask) -> StageResult:
     extra = select(extra, agreeing(table, extra, len(frames), n_search))
     write_pairs(task.out, extra)
     spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())
-    pieces = components_of(join_tables([table, extra]), len(frames))
+    components = components_of(join_tables([table, extra]), len(frames))
     task.report(1, 1)
     return StageResult(
         {
@@ -58,7 +58,7 @@ def run(task: StageTask) -> StageResult:
             "jumps": [[cut, cut + 1] for cut in jumps],
             "dropped": int(dropped.sum()),
             "spanned": [list(gap) for gap in spanned],
-            "largest_piece": int(max((pieces == label).sum() for label in set(pieces.tolist()))),
+            "largest_piece": int(max((components == label).sum() for label in set(components.tolist()))),
             "flags": [flag.to_dict() for flag in (*_jump_flags(jumps), *_gap_flags(spanned))],
         }
     )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pycolmap
 
 
-def _veto(case: Case) -> Callable[[pycolmap.Reconstruction], bool]:
+def _rejection(case: Case) -> Callable[[pycolmap.Reconstruction], bool]:
     table = read_graph(case.graph)
     return lambda model: is_wrong(model, table, case.end - case.start)
 
@@ -44,7 +44,7 @@ def run(task: StageTask) -> StageResult:
             case,
             model,
             lambda registered, offered: task.report(registered, offered, f"{registered} of {offered}"),
-            is_wrong=_veto(case) if task.settings.model.veto else None,
+            is_wrong=_rejection(case) if task.settings.model.veto else None,
         )
     write_model(task.out, model)
     stats = model_stats(model)

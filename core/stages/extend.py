@@ -23,8 +23,8 @@ from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.keypoint_alignment import align_keypoints
 from core.sparse.lens import spans_said
-from core.sparse.loose import drop_faint_frames, drop_loose_ends
 from core.sparse.mapper import mapper_options, open_cache
+from core.sparse.weakly_connected import drop_weak_ends, drop_weak_images
 from core.stage import Facts, StageResult, StageTask
 from core.video.still import read_still
 from core.viewgraph import PairTable, database_of, read_graph
@@ -38,13 +38,13 @@ def run(task: StageTask) -> StageResult:
     graph, n_frames = task.input(*GRAPHS), int(task.facts["frames"]["n_frames"])
     n_search = int(task.facts["frames"]["n_search"])
     settings = task.settings.model
-    model = read_model(task.input("pieces" if task.piece else "confirm"), task.piece)
+    model = read_model(task.input("pieces" if task.submodel else "confirm"), task.submodel)
     table = read_graph(graph)
 
-    def vetoed(candidate: pycolmap.Reconstruction) -> bool:
+    def is_rejected(candidate: pycolmap.Reconstruction) -> bool:
         return settings.veto and is_wrong(candidate, table, n_frames, n_search)
 
-    if settings.register_rest and not task.piece:
+    if settings.register_rest and not task.submodel:
         grown = register_rest(
             graph,
             model,
@@ -53,10 +53,10 @@ def run(task: StageTask) -> StageResult:
             seed=task.settings.seed,
             progress=lambda registered, offered: task.report(0.5 * registered, offered, f"{registered} registered"),
         )
-        if not vetoed(grown) or vetoed(model):
+        if not is_rejected(grown) or is_rejected(model):
             model = grown
     attempts: list[Attempt] = []
-    if settings.join and not task.piece:
+    if settings.join and not task.submodel:
         model, attempts = join_rest(
             graph,
             model,
@@ -64,9 +64,9 @@ def run(task: StageTask) -> StageResult:
             n_frames,
             task.settings.mapper,
             seed=task.settings.seed,
-            is_wrong=vetoed,
+            is_wrong=is_rejected,
         )
-    model, loose = drop_loose_ends(model, n_search) if settings.drop_loose else (model, [])
+    model, dropped = drop_weak_ends(model, n_search) if settings.drop_loose else (model, [])
     adjustment, said_px = None, spans_said(task.facts.get("reverify", task.facts["camera"]))
     left: Flag | None = None
     if settings.final_adjustment:
@@ -79,14 +79,14 @@ def run(task: StageTask) -> StageResult:
         model = adjustment.model
     if settings.drop_loose:
         # Counted here, after the filters: until then mismatches hold what nothing holds.
-        model, faint = drop_faint_frames(model)
-        loose = sorted(loose + faint)
+        model, weak_images = drop_weak_images(model)
+        dropped = sorted(dropped + weak_images)
     write_model(task.out, model)
     write_registered(task.out, [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())])
     # Of a further model nobody asks how much of the video it covers.
-    offered = model.num_reg_images() if task.piece else n_frames
+    offered = model.num_reg_images() if task.submodel else n_frames
     facts = _facts(model, adjustment, table, offered, n_search, left or check_left(_lens(model).focal_px, said_px))
-    return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": loose})
+    return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": dropped})
 
 
 def _lens(model: pycolmap.Reconstruction) -> Lens:

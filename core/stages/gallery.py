@@ -26,7 +26,7 @@ from core.scene.frame import SourceFrame
 from core.stage import StageResult, StageTask
 from core.surface.ply import read_mesh
 from core.task_key import stage_of
-from core.video.opening import reopen_video
+from core.video.factory import reopen_video
 from core.video.shown import ShownFrame, shown_frames
 from core.video.table import read_infos
 from core.videos import named

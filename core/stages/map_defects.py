@@ -10,7 +10,7 @@ from core.io.annotations import read_detections, read_looked_at
 from core.io.frames import read_crop, read_frames, read_registered
 from core.io.sparse import model_folder
 from core.io.surface import fused_cloud, support_cloud, supported_mesh
-from core.mapping.depth_witness import no_depth_maps
+from core.mapping.depth_consistency import no_depth_maps
 from core.mapping.load import matches_of_graph, open_depth_maps, open_mapping_scene
 from core.mapping.scene import Scene
 from core.mapping.support import SparseModel, boxes_by_frame, read_sparse_model
@@ -27,7 +27,7 @@ from core.video.table import read_infos
 
 def world_comments(task: StageTask) -> tuple[str, ...]:
     """What the coordinates of a written surface are."""
-    return (f"world frame of sparse model {task.piece} (COLMAP)", "unit: model")
+    return (f"world frame of sparse model {task.submodel} (COLMAP)", "unit: model")
 
 
 def run(task: StageTask) -> StageResult:
@@ -67,7 +67,7 @@ def open_scene_of(task: StageTask) -> tuple[Scene, RunFrames]:
         boxes_by_frame(detections, looked, frames.index_of_source, crop),
         depth,
         task.threads,
-        task.piece,
+        task.submodel,
     )
     return scene, frames
 

@@ -9,7 +9,7 @@ import torch
 from core.features.io import FrameFeatures, feature_files, read_features
 from core.io.frames import read_frames
 from core.matched_pair import MatchedPair
-from core.matching.auto import PairMatcher, Patience
+from core.matching.auto import PairMatcher, RematchPolicy
 from core.matching.keyframes import keyframe_pairs, read_keyframes
 from core.matching.pairs import match_pairs, pairs_of_chunk
 from core.stage import StageResult, StageTask
@@ -22,14 +22,16 @@ def run(task: StageTask) -> StageResult:
     torch.set_num_threads(task.threads)
     pairs = pairs_of_chunk(_all_pairs(task), int(task.args["start"]), int(task.args["end"]))
     n_search = read_frames(task.input("frames")).n_search
-    table = make_table(pairs, match_all(task, pairs, Patience(n_search)))
+    table = make_table(pairs, match_all(task, pairs, RematchPolicy(n_search)))
     write_pairs(task.out, table)
     task.report(1, 1)
     return StageResult(dict(table_facts(table)))
 
 
-def match_all(task: StageTask, pairs: Sequence[tuple[int, int]], patience: Patience | None = None) -> list[MatchedPair]:
-    """Outcomes of `pairs` in their order, the nearest frames matched first; all with new patience unless it is given.
+def match_all(
+    task: StageTask, pairs: Sequence[tuple[int, int]], policy: RematchPolicy | None = None
+) -> list[MatchedPair]:
+    """Outcomes of `pairs` in their order, the nearest frames matched first; all under a new policy unless one is given.
 
     Features are read when first needed and let go after their last use.
     """
@@ -42,14 +44,14 @@ def match_all(task: StageTask, pairs: Sequence[tuple[int, int]], patience: Patie
     last_use = {frame: row for row, pair in enumerate(order) for frame in pair}
     loaded: dict[int, FrameFeatures] = {}
     matched: dict[tuple[int, int], MatchedPair] = {}
-    patience = patience or Patience()
+    policy = policy or RematchPolicy()
     for row, pair in enumerate(order):
         task.report(row, len(pairs), f"frames {pair[0]} and {pair[1]}")
         for frame in pair:
             if frame not in loaded:
                 loaded[frame] = read_features(files[frame])
-        found = matcher.match(loaded[pair[0]], loaded[pair[1]], rematch=not patience.has_run_out(pair))
-        patience.note(pair, found)
+        found = matcher.match(loaded[pair[0]], loaded[pair[1]], rematch=not policy.gives_up(pair))
+        policy.note(pair, found)
         matched[pair] = found
         for frame in pair:
             if last_use[frame] == row:

@@ -1,4 +1,4 @@
-"""Stage `perspective`: the window of the best vetoed case, mapped with a perspective lens."""
+"""Stage `perspective`: the window of the best rejected case, mapped with a perspective lens."""
 
 from __future__ import annotations
 

@@ -8,18 +8,18 @@ from core.io.annotations import read_detections
 from core.io.frames import read_damaged, read_frames
 from core.scene.frame import RunFrames, SourceFrame
 from core.stage import StageResult, StageTask
-from core.video.opening import reopen_video
+from core.video.factory import reopen_video
 from core.video.shown import shown_frames
 from core.video.table import read_infos
 from core.videos import named
-from core.viewer.pictures import U8, shown_detections, write_pictures
+from core.viewer.pictures import U8, drawn_detections, write_pictures
 
 
 def run(task: StageTask) -> StageResult:
     """Write `frames/`, `full/`, `sprite.jpg` and `pictures.json`. Facts: n_pictures."""
     folder = task.input("frames")
     frames = read_frames(folder)
-    detections = shown_detections(read_detections(task.input("annotations")), frames)
+    detections = drawn_detections(read_detections(task.input("annotations")), frames)
     made = write_pictures(task.out, _decoded(task, frames), detections, read_damaged(folder))
     return StageResult({"n_pictures": len(made.scales)})
 

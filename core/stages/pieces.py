@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.checks.model import is_wrong
 from core.io.sparse import read_model, write_model
 from core.scene.case import GRAPHS
-from core.sparse.pieces import find_pieces
+from core.sparse.submodels import find_submodels
 from core.stage import StageResult, StageTask
 from core.viewgraph import read_graph
 
@@ -17,7 +17,7 @@ def run(task: StageTask) -> StageResult:
     first = read_model(task.input("extend"))
     taken = {int(image_id) - 1 for image_id in first.reg_image_ids()}
 
-    found = find_pieces(
+    found = find_submodels(
         graph,
         table,
         taken,

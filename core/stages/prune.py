@@ -1,4 +1,4 @@
-"""Stage `prune`: the view graph without what a vetoed model and triplets speak against, and the parts left of it."""
+"""Stage `prune`: the view graph without what a rejected model and triplets speak against, and the parts left of it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.viewgraph import database_of, graph_facts, read_graph, write_database,
 
 
 def run(task: StageTask) -> StageResult:
-    """Write ``graph.npz`` and ``database.db`` as stage `graph` does; what follows after a veto reads these."""
+    """Write ``graph.npz`` and ``database.db`` as stage `graph` does; what follows after a rejection reads these."""
     frames = read_frames(task.input("frames"))
     graph = task.input("graph")
     position = positions(frames.moments_s, frames.n_search, frames.videos)
@@ -27,7 +27,7 @@ def run(task: StageTask) -> StageResult:
     return StageResult(
         {
             **graph_facts(found.table, len(frames)),
-            "doubted": found.doubted,
+            "doubted": found.n_rejected,
             "cuts": [[cut, cut + 1] for cut in found.cuts],
             "parts": [list(part) for part in found.parts],
         }

@@ -1,4 +1,4 @@
-"""Stage `reduce_parts`: after a veto of every case, the part that the inspection goes on with."""
+"""Stage `reduce_parts`: after every case was rejected, the part that the inspection goes on with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stage `reduce_perspective`: after a veto of every fisheye case, whether the perspective one is gone on with."""
+"""Stage `reduce_perspective`: after every fisheye case was rejected, whether the perspective one is gone on with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stage `reverify`: after a veto of every case, the view graph as a perspective lens sees it."""
+"""Stage `reverify`: after every case was rejected, the view graph as a perspective lens sees it."""
 
 from __future__ import annotations
 

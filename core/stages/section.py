@@ -1,4 +1,4 @@
-"""Stage `section`: one part of a model that the checks vetoed."""
+"""Stage `section`: one part of a model that the checks rejected."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def run(task: StageTask) -> StageResult:
     findings: list[JsonObject] = []
     if isinstance(row, BladeRow):
         task.report(3, 4, "finding the blades of the defects")
-        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.piece, found.scale))
+        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.submodel, found.scale))
         extra["blade"] = blades_of_vertices(row, mesh)
     document = {**row.to_dict(), "findings": findings}
     write_json(task.out / ROW, document)
@@ -78,17 +78,17 @@ def _grouping(task: StageTask, mesh: Mesh, views: Views, row: BladeRow | NoRow) 
     if task.settings.mapping.method == "thesis":
         return ThesisGrouping(placed, mesh, views, task.settings.timeline, task.report)
     scene, frames = open_scene_of(task)
-    start = Start.after(task.facts, task.piece)
+    start = Start.after(task.facts, task.submodel)
     detections = {one.id: one for one in read_detections(task.input("annotations"))}
     of_row = scale_of_row(row, task.settings.row)
     scale = find_scale(task.settings.scale, scene, frames, [] if of_row is None else [of_row])
-    doubts, settings = _doubts(task), task.settings.mapping
+    n_warnings, settings = _warnings(task), task.settings.mapping
     return SurfaceGrouping(
-        placed, detections, scale, scene, frames, mesh, doubts, start, settings, task.threads, task.report
+        placed, detections, scale, scene, frames, mesh, n_warnings, start, settings, task.threads, task.report
     )
 
 
-def _doubts(task: StageTask) -> int:
+def _warnings(task: StageTask) -> int:
     """Warnings of the checks about the model that the places lie on."""
-    checks = task.facts.get(key_of("extend", task.piece), {}).get("checks", ())
+    checks = task.facts.get(key_of("extend", task.submodel), {}).get("checks", ())
     return len({check["code"] for check in checks if check["severity"] != Severity.INFO})

@@ -19,7 +19,7 @@ from core.stage import StageResult, StageTask
 JPEG_QUALITY = 97
 
 
-MIN_PIECE_VIEWS = 10
+MIN_SUBMODEL_VIEWS = 10
 """Depth maps of a further model, at least."""
 
 
@@ -67,8 +67,8 @@ def run(task: StageTask) -> StageResult:
 def _of_its_share(task: StageTask) -> DenseSettings:
     """A further model has depth maps by its share of the registered frames: the budget is that of the run."""
     settings = task.settings.dense
-    if not task.piece or not settings.views:
+    if not task.submodel or not settings.views:
         return settings
     counts = [int(task.facts["pieces"]["registered_first"]), *map(int, task.facts["pieces"]["registered_images"])]
-    share = counts[task.piece] / sum(counts)
-    return settings.model_copy(update={"views": max(MIN_PIECE_VIEWS, round(share * settings.views))})
+    share = counts[task.submodel] / sum(counts)
+    return settings.model_copy(update={"views": max(MIN_SUBMODEL_VIEWS, round(share * settings.views))})

@@ -65,7 +65,7 @@ class Found:
 
 
 def find_defects(
-    observations: Sequence[Observation], scene: Scene, times_s: Mapping[int, float], doubts: int = 0
+    observations: Sequence[Observation], scene: Scene, times_s: Mapping[int, float], n_warnings: int = 0
 ) -> Found:
     """Group the observations of a model into defects.
 
@@ -73,7 +73,7 @@ def find_defects(
         observations: in input order, all of them.
         scene: of the model.
         times_s: of its registered frames on one axis of all videos (`core.videos.moment`), by frame index.
-        doubts: warnings of the checks about the model.
+        n_warnings: warnings of the checks about the model.
     """
     looked = set(scene.views.frame_index[scene.frames.rows].tolist())
     groups = merge_alike(group_observations(observations), observations, scene.views, scene.crop)
@@ -84,7 +84,7 @@ def find_defects(
     updated = list(observations)
     for defect in candidates:
         for member in defect.members:
-            updated[member] = _judged(updated[member], defect, doubts)
+            updated[member] = _judged(updated[member], defect, n_warnings)
     defects = tuple(defect for defect in candidates if defect.exists >= MIN_EXISTENCE)
     for number, defect in enumerate(defects):
         for member in defect.members:
@@ -161,13 +161,13 @@ def _recall(defects: Sequence[Defect]) -> float:
     return sum(defect.k for defect in known) / total if total else 0.5
 
 
-def _judged(one: Observation, defect: Defect, doubts: int) -> Observation:
+def _judged(one: Observation, defect: Defect, n_warnings: int) -> Observation:
     """The observation with its confidence, which depends on the other observations of the same defect."""
     if one.parts is None:
         return one
     place = np.array((one.row.x, one.row.y, one.row.z))
     offset = float(np.linalg.norm(place - defect.place)) / max(one.radius, 1e-12)
-    parts = replace(one.parts, peers=len(defect.members) - 1, offset=offset, doubts=doubts)
+    parts = replace(one.parts, peers=len(defect.members) - 1, offset=offset, model_warnings=n_warnings)
     return replace(one, parts=parts, row=replace(one.row, confidence=round(confidence(parts), 4)))
 
 

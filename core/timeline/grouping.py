@@ -23,7 +23,7 @@ from core.scene.size import Scale, Size, scale_fields
 from core.settings.groups import MappingSettings
 from core.stage import Facts
 from core.surface.ply import Mesh
-from core.task_key import piece_of, stage_of
+from core.task_key import stage_of, submodel_of
 from core.timeline.defects import Found, defect_records, event_rows, find_defects
 from core.timeline.surface import defect_of_vertices, faces_of_defects
 
@@ -38,9 +38,9 @@ class Start:
     event: int = 0
 
     @classmethod
-    def after(cls, facts: Mapping[str, Facts], piece: int) -> Start:
+    def after(cls, facts: Mapping[str, Facts], submodel: int) -> Start:
         """Behind the timelines of all models before `piece`, whose facts are given by task key."""
-        before = [own for key, own in facts.items() if stage_of(key) == "timeline" and piece_of(key) < piece]
+        before = [own for key, own in facts.items() if stage_of(key) == "timeline" and submodel_of(key) < submodel]
         return cls(sum(int(own["n_defects"]) for own in before), sum(int(own["n_events"]) for own in before))
 
     def rows(self, rows: Sequence[DetectionRow]) -> list[DetectionRow]:
@@ -82,7 +82,7 @@ class SurfaceGrouping:
     frames: RunFrames
     mesh: Mesh
     """To be coloured."""
-    doubts: int
+    n_warnings: int
     """Warnings of the checks about the model that the places lie on."""
     start: Start
     settings: MappingSettings
@@ -94,7 +94,7 @@ class SurfaceGrouping:
         observations = read_observations(self.folder)
         self.report(1, 4, "telling defects apart")
         times_s = self.frames.moment_of_index
-        found = find_defects(observations, self.scene, times_s, self.doubts)
+        found = find_defects(observations, self.scene, times_s, self.n_warnings)
         events = event_rows(found, times_s)
         self.report(2, 4, "colouring the surface and measuring the defects")
         weight, vertex_defect = paint_defects(self.mesh, found, self.settings, self.threads)

@@ -10,8 +10,8 @@ from pathlib import Path
 from core.errors import BadInput
 from core.video.clock import FALLBACK_RATE
 from core.video.decode import VideoReader
+from core.video.factory import open_video
 from core.video.limits import MAX_FRAME_PIXELS
-from core.video.opening import open_video
 from core.video.orientation import square_width
 from core.video.picture_reader import PictureReader
 from core.video.pictures import digest_of_video
@@ -41,7 +41,7 @@ def probe_video(
     """Decode all frames in one pass of constant memory and return the frame table.
 
     Args:
-        path: the video: a file, or pictures (`core.video.opening.open_video`).
+        path: the video: a file, or pictures (`core.video.factory.open_video`).
         allow_truncated: take the decodable part of a damaged video instead of refusing it.
         stream: number of the video stream; None takes the film.
         fps: frames per second where the file holds no times.

@@ -12,7 +12,7 @@ from core.flags import Verdict
 from core.json_files import JsonObject, read_json
 from core.outputs import CONFIDENCE, ROW, SURFACE_GLB, VIEWER
 from core.report.build import Report
-from core.report.load import served_pieces
+from core.report.load import served_submodels
 from core.task_key import key_of
 from core.viewer.deliver import write_page
 from core.viewer.document import ViewerSource
@@ -32,8 +32,10 @@ def write_pages(report: Report, folders: Mapping[str, Path], files: Mapping[str,
         return []
     pictures = _read_pictures(folders)
     trusted = report.verdict != Verdict.REFUSED
-    pieces = [piece for piece in served_pieces(folders) if key_of("viewer", piece) in folders] if trusted else []
-    models = (0, *pieces)
+    submodels = (
+        [submodel for submodel in served_submodels(folders) if key_of("viewer", submodel) in folders] if trusted else []
+    )
+    models = (0, *submodels)
     scenes = {model: _scene(folders, model) for model in models}
     first = scenes[0]
     if pictures is not None and first is not None and trusted:

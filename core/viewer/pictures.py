@@ -18,7 +18,7 @@ from core.errors import DiskFull, StageFailed
 from core.outputs import SPRITE
 from core.scene.detection import Detection
 from core.scene.frame import RunFrames, image_name
-from core.viewer.scene import FRAMES, FULL, Pictures, Shown, Sprite
+from core.viewer.scene import FRAMES, FULL, DrawnDetection, Pictures, Sprite
 
 U8 = NDArray[np.uint8]
 
@@ -32,10 +32,10 @@ _QUALITY = 85
 _SPRITE_QUALITY = 70
 
 
-def shown_detections(detections: Sequence[Detection], frames: RunFrames) -> dict[int, Shown]:
+def drawn_detections(detections: Sequence[Detection], frames: RunFrames) -> dict[int, DrawnDetection]:
     """Frame and outline of every detection by its id."""
     return {
-        one.id: Shown(None if one.source is None else frames.index_of_source.get(one.source), one.polygon)
+        one.id: DrawnDetection(None if one.source is None else frames.index_of_source.get(one.source), one.polygon)
         for one in detections
     }
 
@@ -43,7 +43,7 @@ def shown_detections(detections: Sequence[Detection], frames: RunFrames) -> dict
 def write_pictures(
     folder: Path,
     pictures: Iterator[tuple[int, U8]],
-    detections: Mapping[int, Shown],
+    detections: Mapping[int, DrawnDetection],
     damaged: Collection[int] = (),
 ) -> Pictures:
     """Write every picture, the sprite and `pictures.json`.

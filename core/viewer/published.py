@@ -37,7 +37,7 @@ from core.scene.defect import DefectRecord
 from core.scene.frame import Crop, Frame, Role, RunFrames, image_name
 from core.scene.views import views_of
 from core.surface.ply import read_mesh
-from core.video.opening import open_video
+from core.video.factory import open_video
 from core.video.probe import probe_video
 from core.video.shown import shown_frames
 from core.videos import input_role
@@ -46,7 +46,7 @@ from core.viewer.deliver import write_page
 from core.viewer.document import ViewerSource
 from core.viewer.pictures import U8, write_pictures
 from core.viewer.scene import FRAMES as PICTURES
-from core.viewer.scene import FULL, SCENE_FILE, Pictures, Shown, ViewerScene, best_frames
+from core.viewer.scene import FULL, SCENE_FILE, DrawnDetection, Pictures, ViewerScene, best_frames
 
 
 def build_pages(folder: Path, videos: Sequence[Path] = ()) -> list[str]:
@@ -165,7 +165,7 @@ def _pictures(report: Report, videos: Sequence[Path], work: Path) -> Pictures:
     names = ("index", "source_index", "pts", "time_s", "sha256", "role", "video")
     frames = RunFrames(tuple(Frame(**{name: row[name] for name in names}) for row in rows))  # type: ignore[arg-type]  # a table's cells
     _require_same(report, videos, frames)
-    shown = {int(row["id"]): Shown(row["frame_index"], None) for row in report.detections}  # type: ignore[arg-type]
+    shown = {int(row["id"]): DrawnDetection(row["frame_index"], None) for row in report.detections}  # type: ignore[arg-type]
     return write_pictures(work, _decoded(videos, frames), shown)
 
 

@@ -31,7 +31,7 @@ class Sprite:
 
 
 @dataclass(frozen=True)
-class Shown:
+class DrawnDetection:
     """Where a detection of the input is drawn."""
 
     frame: int | None
@@ -53,7 +53,7 @@ class Pictures:
     """Position in the sprite."""
     sprite: Sprite | None
     damaged: tuple[int, ...]
-    detections: Mapping[int, Shown]
+    detections: Mapping[int, DrawnDetection]
 
     def with_full(self, frames: Collection[int]) -> Pictures:
         """The same where the pictures of some frames were replaced by those at the source's size."""
@@ -74,13 +74,13 @@ class Pictures:
             tiles={int(index): tile for index, tile in row["tiles"].items()},
             sprite=None if row["sprite"] is None else Sprite(**row["sprite"]),
             damaged=tuple(row["damaged"]),
-            detections={int(number): _shown(one) for number, one in row["detections"].items()},
+            detections={int(number): _drawn(one) for number, one in row["detections"].items()},
         )
 
 
-def _shown(row: JsonObject) -> Shown:
+def _drawn(row: JsonObject) -> DrawnDetection:
     polygon = row["polygon"]
-    return Shown(row["frame"], None if polygon is None else tuple((x, y) for x, y in polygon))
+    return DrawnDetection(row["frame"], None if polygon is None else tuple((x, y) for x, y in polygon))
 
 
 @dataclass(frozen=True)

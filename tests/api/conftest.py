@@ -167,7 +167,7 @@ class Server(uvicorn.Server):
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    """`wait_for`, with the patience that an answer of the API needs."""
+    """`wait_for`, with the timeout that an answer of the API needs."""
     wait_for(condition, seconds)
 
 

@@ -55,7 +55,7 @@ def test_right_is_within_the_limits_of_median_and_tail(tmp_path: Path) -> None:
     assert judged["default/easy"].errors_percent == pytest.approx((100 * 0.80 / 27, 100 * 2.69 / 27))
 
 
-def test_doubted_right_ones_and_trusted_wrong_ones_are_counted() -> None:
+def test_suspected_right_ones_and_trusted_wrong_ones_are_counted() -> None:
     right, wrong = (0.1, 0.2), (2.0, 9.0)
     judged = [
         Judged("a", "ok", (), 9, right, "path"),

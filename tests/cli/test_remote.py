@@ -216,9 +216,9 @@ def test_an_upload_that_was_cut_off_goes_on(backend: Backend, address: str, vide
 
     with Client(address, transfers=transfers) as client, pytest.raises(Cut):
         client.upload(video, cut)
-    uploads, patience = backend.services.uploads.folder, time.monotonic() + 10.0
+    uploads, deadline = backend.services.uploads.folder, time.monotonic() + 10.0
     # What was sent lies in the server's buffers for a moment.
-    while not any(path.stat().st_size for path in uploads.iterdir()) and time.monotonic() < patience:
+    while not any(path.stat().st_size for path in uploads.iterdir()) and time.monotonic() < deadline:
         time.sleep(0.01)
     with Client(address, transfers=transfers) as client:
         upload = client.upload(video, lambda _name, done, _total: seen.append(done))

@@ -66,7 +66,7 @@ def test_records_are_applied_once(folder: Path, tmp_path: Path, capsys: pytest.C
 def test_a_drawn_box_is_cast_onto_the_surface(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     centroid = np.array(target(folder)["centroid"])
     result = Result(folder)
-    seen = result.frames_seeing(centroid)[0]
+    seen = result.visible_frames(centroid)[0]
     width, height = result._crop.source_width, result._crop.source_height
     x, y = seen.x / width, seen.y / height
     box = [x - 0.01, y - 0.01, x + 0.01, y + 0.01]

@@ -15,7 +15,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.mapping.consensus import looked_at
-from core.mapping.depth_witness import DepthMaps, no_depth_maps
+from core.mapping.depth_consistency import DepthMaps, no_depth_maps
 from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals
 from core.mapping.support import Observations
 from core.mapping.surface import Surface

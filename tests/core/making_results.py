@@ -60,8 +60,8 @@ def opened(name: str, out: Path) -> Path:
 
 def _two_models(work: Path, out: Path) -> None:
     folders, facts = _begun(work)
-    for piece, registered in REGISTERED.items():
-        extend, mesh = work / key_of("extend", piece), work / key_of("mesh", piece)
+    for submodel, registered in REGISTERED.items():
+        extend, mesh = work / key_of("extend", submodel), work / key_of("mesh", submodel)
         sparse_model(extend / "model", registered)
         write(extend / "registered.json", registered)
         mesh.mkdir()
@@ -69,22 +69,22 @@ def _two_models(work: Path, out: Path) -> None:
         folders |= {extend.name: extend, mesh.name: mesh}
         facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
         for stage in (map_defects, timeline):
-            _run(stage, piece, work, folders, facts)
-        _number(folders[key_of("timeline", piece)], piece)
-        _run(viewer, piece, work, folders, facts)
+            _run(stage, submodel, work, folders, facts)
+        _number(folders[key_of("timeline", submodel)], submodel)
+        _run(viewer, submodel, work, folders, facts)
     _publish(_record(facts, folders), folders, out)
 
 
-def _number(folder: Path, piece: int) -> None:
+def _number(folder: Path, submodel: int) -> None:
     """Give the tables of a further model its number, and its defects and events their own: the thesis's rules, whose
     short way is taken here, know one model alone."""
-    if not piece:
+    if not submodel:
         return
-    defects = [replace(one, id=one.id + 10, model=piece) for one in read_defects(folder)]
+    defects = [replace(one, id=one.id + 10, model=submodel) for one in read_defects(folder)]
     defects = [replace(one, events=tuple(event + 10 for event in one.events)) for one in defects]
     events = [replace(one, event_id=one.event_id + 10, defect_id=one.defect_id + 10) for one in read_events(folder)]
     rows = [
-        replace(one, model=piece, defect_id=None if one.defect_id is None else one.defect_id + 10)
+        replace(one, model=submodel, defect_id=None if one.defect_id is None else one.defect_id + 10)
         if one.outcome == Outcome.MAPPED
         else one
         for one in read_rows(folder)
@@ -111,11 +111,11 @@ def _begun(work: Path) -> tuple[dict[str, Path], dict[str, Facts]]:
     return folders, facts
 
 
-def _run(stage: ModuleType, piece: int, work: Path, folders: dict[str, Path], facts: dict[str, Facts]) -> None:
-    key = key_of(stage.__name__.rsplit(".", 1)[-1], piece)
+def _run(stage: ModuleType, submodel: int, work: Path, folders: dict[str, Path], facts: dict[str, Facts]) -> None:
+    key = key_of(stage.__name__.rsplit(".", 1)[-1], submodel)
     out = work / key
     out.mkdir()
-    args = {"piece": piece} if piece else {}
+    args = {"piece": submodel} if submodel else {}
     task = StageTask(key, args, SETTINGS, dict(folders), dict(facts), (Recording(work / "video.mp4"),), out)
     facts[key] = stage.run(task).facts
     folders[key] = out

@@ -14,19 +14,19 @@ from core.graph import expand
 from core.settings import make_settings
 from core.stage import Facts, StageTask
 from core.stage_specs import STAGES
-from core.task_key import piece_of, stage_of
+from core.task_key import stage_of, submodel_of
 
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
 SEARCHED: dict[str, Facts] = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
 CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": False}}
 WRONG: Facts = {"vetoed": True, "codes": "bent_model, weak_join", "start": 20, "end": 200}
-VETOED: dict[str, Facts] = {**SEARCHED, "reduce_refine": WRONG}
-PRUNED: dict[str, Facts] = {**VETOED, "prune": {"parts": [[0, 61], [61, 200]]}}
+REJECTED: dict[str, Facts] = {**SEARCHED, "reduce_refine": WRONG}
+PRUNED: dict[str, Facts] = {**REJECTED, "prune": {"parts": [[0, 61], [61, 200]]}}
 PARTED: dict[str, Facts] = {**PRUNED, "reduce_parts": {"best": "section_001_0061_0200"}}
 NO_PART: dict[str, Facts] = {**PRUNED, "reduce_parts": {"best": "", "why": "every model was vetoed"}}
 DENSE: dict[str, Facts] = {**CHOSEN, "undistort": {"n_views": 90}}
 MODELS: dict[str, Facts] = {"undistort": {"n_views": 90}, "pieces": {"n_pieces": 1}}
-AFTER_VETO: dict[str, Facts] = {**PARTED, **MODELS}
+AFTER_REJECTION: dict[str, Facts] = {**PARTED, **MODELS}
 OTHER_LENS: dict[str, Facts] = {**NO_PART, **MODELS}
 
 
@@ -42,7 +42,7 @@ def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, A
 
 @pytest.mark.parametrize(
     "facts",
-    [{}, FRAMES, SEARCHED, CHOSEN, VETOED, PRUNED, NO_PART, AFTER_VETO, OTHER_LENS, DENSE, {**DENSE, **MODELS}],
+    [{}, FRAMES, SEARCHED, CHOSEN, REJECTED, PRUNED, NO_PART, AFTER_REJECTION, OTHER_LENS, DENSE, {**DENSE, **MODELS}],
 )
 @pytest.mark.parametrize("preset", ["default", "draft", "thesis"])
 def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: str) -> None:
@@ -93,7 +93,7 @@ def test_a_start_that_finds_no_lens_stops_nothing() -> None:
 
 def test_the_plan_only_grows() -> None:
     good: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, CHOSEN, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
-    for known in (good, [SEARCHED, VETOED, PRUNED, PARTED, AFTER_VETO], [PRUNED, NO_PART, OTHER_LENS]):
+    for known in (good, [SEARCHED, REJECTED, PRUNED, PARTED, AFTER_REJECTION], [PRUNED, NO_PART, OTHER_LENS]):
         for before, after in pairwise(known):
             assert set(keys(before)) <= set(keys(after))
             earlier, later = (
@@ -102,23 +102,23 @@ def test_the_plan_only_grows() -> None:
             assert all(later[key] == depends for key, depends in earlier.items())
 
 
-def test_after_a_veto_every_part_is_a_case_and_all_that_follows_reads_the_pruned_graph() -> None:
+def test_after_a_rejection_every_part_is_a_case_and_all_that_follows_reads_the_pruned_graph() -> None:
     assert "prune" not in keys(DENSE)
-    assert keys(VETOED)[-1] == "prune"
-    tasks = {task.key: task for task in expand(make_settings(), AFTER_VETO)}
+    assert keys(REJECTED)[-1] == "prune"
+    tasks = {task.key: task for task in expand(make_settings(), AFTER_REJECTION)}
     names = ["section_000_0000_0061", "section_001_0061_0200"]
     assert dict(tasks[f"section/{names[1]}"].args) == {"name": names[1], "start": 61, "end": 200, "warm_from": ""}
     assert {f"section/{name}" for name in names} <= set(tasks["reduce_parts"].depends)
     assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")
     readers = ("extend", "pieces", "map_defects", "extend@1", "map_defects@1")
     assert all("prune" in tasks[key].depends and "graph" not in tasks[key].depends for key in readers)
-    nothing = {**VETOED, "prune": {"parts": []}}
+    nothing = {**REJECTED, "prune": {"parts": []}}
     assert "reduce_parts" in keys(nothing)  # which then says that there is none
 
 
 def test_where_no_part_passes_a_perspective_lens_is_sought_and_all_that_follows_reads_its_graph() -> None:
     assert keys(PRUNED)[-1] == "reduce_parts"  # whether its cost is needed is not known yet
-    assert not {"reverify", "reduce_perspective"} & set(keys(AFTER_VETO))
+    assert not {"reverify", "reduce_perspective"} & set(keys(AFTER_REJECTION))
     tasks = {task.key: task for task in expand(make_settings(), OTHER_LENS)}
     assert tasks["reduce_parts"].args == {"another_lens": True}
     starts = [key for key in tasks if key.startswith("focal/SIMPLE_RADIAL-")]
@@ -161,9 +161,9 @@ def test_the_gallery_waits_until_the_further_models_are_known() -> None:
     assert {"timeline", "timeline@1", "timeline@2"} <= set(tasks["gallery"].depends)
     assert tasks["timeline@2"].args == {"piece": 2}
     assert {"timeline", "timeline@1"} <= set(tasks["timeline@2"].depends)
-    further = [task for task in tasks.values() if piece_of(task.key)]
-    assert {piece_of(task.key) for task in further} == {1, 2}
-    assert all(task.optional and task.args["piece"] == piece_of(task.key) for task in further)
+    further = [task for task in tasks.values() if submodel_of(task.key)]
+    assert {submodel_of(task.key) for task in further} == {1, 2}
+    assert all(task.optional and task.args["piece"] == submodel_of(task.key) for task in further)
     assert "timeline@1" not in keys({**DENSE, "pieces": {"n_pieces": 0}})
 
 

@@ -69,14 +69,14 @@ def test_pixels_that_show_nothing_say_why(folder: Path) -> None:
 
 
 def test_a_point_is_seen_by_its_frames_best_first(folder: Path) -> None:
-    seeing = Result(folder).frames_seeing(np.array(PLACE))
-    assert {one.source_index for one in seeing} == {10 * frame for frame in FRAMES}
-    assert seeing[0].source_index == 0, "the nearest camera sees it best"
-    assert seeing[0].quality == 1.0
-    for one in seeing:
+    visible = Result(folder).visible_frames(np.array(PLACE))
+    assert {one.source_index for one in visible} == {10 * frame for frame in FRAMES}
+    assert visible[0].source_index == 0, "the nearest camera sees it best"
+    assert visible[0].quality == 1.0
+    for one in visible:
         assert (one.x, one.y) == pytest.approx(tuple(source_pixel(PLACE, one.frame_index)), abs=0.02)
         assert one.time_s == 0.5 * one.frame_index
-    hidden = Result(folder).frames_seeing(np.array((-0.3, 0.0, FAR)))
+    hidden = Result(folder).visible_frames(np.array((-0.3, 0.0, FAR)))
     assert {one.frame_index for one in hidden} == {9}, "the near plate hides it from the others"
 
 
@@ -218,8 +218,8 @@ def test_a_question_names_its_video(two_videos: Path, capsys: pytest.CaptureFixt
     assert result.point_at(40, x, y, 1).frame_index == 9
     assert result.point_at(40, x, y).frame_index == 4
     assert result.frame_at(3.4, 1) == 40
-    assert {one.video for one in result.frames_seeing(np.array(PLACE))} == {0, 1}
-    assert {one.frame_index for one in result.frames_seeing(np.array(PLACE), 1)} <= {5, 9}
+    assert {one.video for one in result.visible_frames(np.array(PLACE))} == {0, 1}
+    assert {one.frame_index for one in result.visible_frames(np.array(PLACE), 1)} <= {5, 9}
     assert main(["point", str(two_videos), "--video", "1", "--time", "0", "--pixel", f"{x},{y}", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["video"] == 1
 
@@ -230,7 +230,7 @@ def test_what_is_outside_a_video_is_told_with_its_number(two_videos: Path) -> No
         result.frame_at(3.0)
     with pytest.raises(BadInput, match="video 1 has no frame 70: 0 to 69"):
         result.point_at(70, 1, 1, 1)
-    for ask in (lambda: result.frame_at(0.0, 2), lambda: result.frames_seeing(np.array(PLACE), -1)):
+    for ask in (lambda: result.frame_at(0.0, 2), lambda: result.visible_frames(np.array(PLACE), -1)):
         with pytest.raises(BadInput, match=r"there is no video -?[12]: 0 to 1") as caught:
             ask()
         assert caught.value.where == "--video"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.task_key import chunk_key, file_stem, key_of, key_of_stem, part_of, parts_of, piece_of, stage_of
+from core.task_key import chunk_key, file_stem, key_of, key_of_stem, part_of, parts_of, stage_of, submodel_of
 
 
 @pytest.mark.parametrize(
@@ -18,7 +18,7 @@ from core.task_key import chunk_key, file_stem, key_of, key_of_stem, part_of, pa
     ],
 )
 def test_a_key_is_read_as_it_was_made(key: str, parts: tuple[str, int, str]) -> None:
-    assert (stage_of(key), piece_of(key), part_of(key)) == parts
+    assert (stage_of(key), submodel_of(key), part_of(key)) == parts
     assert key_of(*parts) == key
     assert key_of_stem(file_stem(key)) == key
     assert "/" not in file_stem(key)

@@ -121,14 +121,14 @@ def test_only_what_was_announced_long_ago_is_announced_again(db: Database) -> No
     announcements = Announcements(db)
     slots(db, 1)
     assert len(announcements.choose()) == 2
-    assert announcements.choose(unheard_s=60) == []
+    assert announcements.choose(overdue_s=60) == []
     age(db, 61)
     assert announcements.choose() == [], "the usual look leaves the room to messages that may still wait"
-    assert names(announcements.choose(unheard_s=60)) == [("one", "split"), ("two", "split")]
-    assert announcements.choose(unheard_s=60) == []
+    assert names(announcements.choose(overdue_s=60)) == [("one", "split"), ("two", "split")]
+    assert announcements.choose(overdue_s=60) == []
     take(Plan(db, GRAPH), "one", "split")
     age(db, 61)
-    assert announcements.choose(unheard_s=60) == [], "no slot is free: the message may wait for it"
+    assert announcements.choose(overdue_s=60) == [], "no slot is free: the message may wait for it"
 
 
 def test_a_message_starts_its_own_task_once(db: Database) -> None:
@@ -160,12 +160,12 @@ def test_whoever_asks_by_itself_first_leaves_alone_what_was_just_announced(db: D
     plan = Plan(db, GRAPH)
     slots(db, 1)
     assert len(Announcements(db).choose()) == 1
-    assert plan.lease("worker", unheard_s=60) is None
+    assert plan.lease("worker", overdue_s=60) is None
     age(db, 61)
-    lease = plan.lease("worker", unheard_s=60)
+    lease = plan.lease("worker", overdue_s=60)
     assert lease is not None
     assert plan.release(lease)
-    assert plan.lease("worker", unheard_s=60) is not None, "it was not announced since"
+    assert plan.lease("worker", overdue_s=60) is not None, "it was not announced since"
 
 
 def test_a_worker_may_report_itself_from_several_threads_at_once(db: Database) -> None:

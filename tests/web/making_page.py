@@ -22,7 +22,7 @@ from core.viewer.build import write_scene
 from core.viewer.deliver import write_page
 from core.viewer.document import ViewerSource
 from core.viewer.pictures import U8, write_pictures
-from core.viewer.scene import Pictures, Shown, ViewerScene
+from core.viewer.scene import DrawnDetection, Pictures, ViewerScene
 from tests.core import making_plates as plates
 from tests.core.making_plates import CROP, FAR, NEAR
 
@@ -159,7 +159,7 @@ def _on(number: int, frame: int, place: tuple[float, float, float], finding: int
 
 
 def _pictures(page: Path, mesh: Mesh) -> Pictures:
-    shown = {number: Shown(frame, None) for number, frame in ((0, 0), (1, 1), (2, 2), (3, 5), (4, 9), (5, 3))}
+    shown = {number: DrawnDetection(frame, None) for number, frame in ((0, 0), (1, 1), (2, 2), (3, 5), (4, 9), (5, 3))}
     made = write_pictures(page, _drawn(mesh), shown)
     (page / "pictures.json").unlink()
     return made

@@ -215,8 +215,8 @@ def test_pixels_show_what_the_query_says(view: Open, folder: Path) -> None:
 def test_a_point_is_seen_by_the_frames_of_the_query(view: Open, folder: Path) -> None:
     opened, result = view(), Result(folder)
     for place in (NEAR_PLACE, (-0.3, 0.0, 6.0), (0.9, -0.4, 6.0)):
-        found = opened.page.evaluate("at => window.bladeatlas.framesSeeing(at)", list(place))
-        expected = result.frames_seeing(np.array(place))
+        found = opened.page.evaluate("at => window.bladeatlas.visibleFrames(at)", list(place))
+        expected = result.visible_frames(np.array(place))
         assert [one["frame"] for one in found] == [one.frame_index for one in expected]
         assert [one["quality"] for one in found] == pytest.approx([one.quality for one in expected], abs=0.01)
 

@@ -75,8 +75,8 @@ def test_messages_name_their_tasks_come_in_turn_and_again_when_lost(db: Database
     assert waiting(redis) == expected
     redis.flushdb()
     assert queue.announce(announcements) == 0
-    assert queue.announce(announcements, unheard_s=60) == 0
-    assert queue.announce(announcements, unheard_s=0) == 2
+    assert queue.announce(announcements, overdue_s=60) == 0
+    assert queue.announce(announcements, overdue_s=0) == 2
     assert waiting(redis) == expected
 
 

@@ -19,8 +19,8 @@ class Work:
         self.gate = threading.Event()
         self._lock = threading.Lock()
 
-    def run_next(self, unheard_s: float | None) -> bool:
-        return self._run(unheard_s)
+    def run_next(self, overdue_s: float | None) -> bool:
+        return self._run(overdue_s)
 
     def run_named(self) -> str | None:
         return "done" if self._run("named") else None

@@ -5,7 +5,7 @@ import { act, asking, draw, drawn, stepOpen, undo, type Asked } from "./review";
 import { fromFrame, home, keepLength, nearFinding, toggleMeasuring, view } from "./page/Surface3D";
 import { stepBoxes } from "./page/FrameView";
 import {
-  bestFrame, drawing, finding, frusta, go, helpOpen, overlay, place, play, playing, selectFinding, selectFrame, setLayer, stepFinding, stepFrame, stepSeeing,
+  bestFrame, drawing, finding, frusta, go, helpOpen, overlay, place, play, playing, selectFinding, selectFrame, setLayer, stepFinding, stepFrame, stepVisible,
 } from "./state";
 import { size, surface } from "./session";
 
@@ -40,8 +40,8 @@ export const KEYS: readonly Key[] = [
   { group: "Review", keys: ["z"], says: "take the last action back", run: undo },
   { group: "Frame", keys: ["."], says: "next frame of the video", run: () => stepFrame(1) },
   { group: "Frame", keys: [","], says: "previous frame of the video", run: () => stepFrame(-1) },
-  { group: "Frame", keys: ["]"], says: "next frame that shows the selection", run: () => stepSeeing(1) },
-  { group: "Frame", keys: ["["], says: "previous frame that shows the selection", run: () => stepSeeing(-1) },
+  { group: "Frame", keys: ["]"], says: "next frame that shows the selection", run: () => stepVisible(1) },
+  { group: "Frame", keys: ["["], says: "previous frame that shows the selection", run: () => stepVisible(-1) },
   { group: "Frame", keys: ["b"], says: "best frame of the finding", run: () => { if (finding.peek()) selectFrame(bestFrame(finding.peek()!.id)); } },
   { group: "Frame", keys: ["o"], says: "surface over the frame: off, half, full", run: () => { overlay.value = overlay.peek() === 0 ? 0.5 : overlay.peek() < 1 ? 1 : 0; } },
   { group: "Frame", keys: ["x"], says: "boxes and masks: outlines, filled, off", run: stepBoxes },

@@ -22,9 +22,9 @@ const answers = {
   ready: true,
   place: () => place.peek(),
   pointAt: (frame: number, x: number, y: number) => questions.pointAt(frame, x, y),
-  framesSeeing: (point: [number, number, number]) => {
+  visibleFrames: (point: [number, number, number]) => {
     const near = surface?.nearest(point);
-    return near ? questions.framesSeeing(near.point, near.normal) : [];
+    return near ? questions.visibleFrames(near.point, near.normal) : [];
   },
   silhouette: (frame: number, width: number, height: number) =>
     Array.from(overlayOn(document.createElement("canvas"))?.silhouette(frame, width, height) ?? []).join(""),

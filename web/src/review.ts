@@ -49,7 +49,7 @@ function asFinding(id: number, { target, made: record, review }: Reviewed): Find
   const points = own.flatMap((one) => (one.point ? [one.point] : []));
   const at = review.point ?? target.centroid ?? (points.length ? mean(points) : null);
   const near = at && surface ? surface.nearest(at) : null;
-  const seen = near ? questions.framesSeeing(near.point, near.normal) : [];
+  const seen = near ? questions.visibleFrames(near.point, near.normal) : [];
   const shown = drawn ? [drawn.frame] : own.flatMap((one) => (one.frame === null ? [] : [one.frame]));
   return {
     id, label: target.label, model: target.model, centroid: at ?? [NaN, NaN, NaN], confidence: null,

@@ -5,7 +5,7 @@ import type { Finding, Vec3 } from "./model/data";
 import { formatHash, NOWHERE, parseHash, type Layer, type Place, type Tab } from "./model/hash";
 import { byRank, type SortKey } from "./model/sorting";
 import { findingName } from "./model/words";
-import type { Seeing, Shown } from "./scene/questions";
+import type { VisibleFrame, SurfaceHit } from "./scene/questions";
 import { data, detections, detectionsOfFrame, findings, frames, order, position, questions, surface, visitsOfFinding } from "./session";
 
 export const place = signal<Place>(NOWHERE);
@@ -34,7 +34,7 @@ export const playing = signal(false);
 export const drawing = signal<{ readonly what: "add" | "move"; readonly box: readonly [number, number, number, number] } | null>(null);
 export const helpOpen = signal(false);
 /** What the pixel clicked last shows. */
-export const asked = signal<{ readonly frame: number; readonly x: number; readonly y: number; readonly shown: Shown } | null>(null);
+export const asked = signal<{ readonly frame: number; readonly x: number; readonly y: number; readonly shown: SurfaceHit } | null>(null);
 /** The camera that an address asks for: on opening, on Back, by a link. */
 export const addressed = signal<readonly number[] | null>(null);
 /** Spoken to screen readers. */
@@ -46,11 +46,11 @@ export const filters = signal({ label: "", blade: "", confidence: "", review: ""
 export const onlyUnplaced = signal(false);
 
 /** Frames that show what is selected, best first: of a point, else of a finding. */
-export const seeing = computed<readonly Seeing[]>(() => {
+export const visibleFrames = computed<readonly VisibleFrame[]>(() => {
   const p = place.value.p;
   if (p && surface) {
     const near = surface.nearest(p);
-    return near ? questions.framesSeeing(near.point, near.normal) : [];
+    return near ? questions.visibleFrames(near.point, near.normal) : [];
   }
   const one = finding.value;
   return one ? one.frames.map(({ frame_index, quality }) => ({ frame: frame_index, quality, x: NaN, y: NaN })) : [];
@@ -113,7 +113,7 @@ export function selectPoint(p: Vec3, on: number, at?: number): void {
     const known = findings.has(on);
     const near = at === undefined && surface ? surface.nearest(p) : null;
     const current = place.peek().f;
-    const list = near ? questions.framesSeeing(near.point, near.normal) : [];
+    const list = near ? questions.visibleFrames(near.point, near.normal) : [];
     // A finding brings its best frame; elsewhere the current frame stays as long as it sees the place.
     const shown = at ?? (known ? bestFrame(on) : list.some((one) => one.frame === current) ? current : (list[0]?.frame ?? current));
     asked.value = null;
@@ -143,8 +143,8 @@ export function stepFrame(by: number): void {
 }
 
 /** Next or previous frame, by time, among those that show what is selected. */
-export function stepSeeing(by: number): void {
-  const among = seeing.peek().map((one) => one.frame).sort((a, b) => (position.get(a) ?? 0) - (position.get(b) ?? 0));
+export function stepVisible(by: number): void {
+  const among = visibleFrames.peek().map((one) => one.frame).sort((a, b) => (position.get(a) ?? 0) - (position.get(b) ?? 0));
   const now = position.get(place.peek().f ?? -1) ?? -1;
   const next = by > 0 ? among.find((k) => (position.get(k) ?? 0) > now) : among.filter((k) => (position.get(k) ?? 0) < now).pop();
   if (next !== undefined) selectFrame(next);

@@ -231,7 +231,7 @@ def test_numbers_below_the_length_in_seconds_may_be_frames() -> None:
 @pytest.mark.parametrize(
     "keys", [["0.0", "1.0"], ["0.00", "0.52", "1.48"], ["00:00:01"], ["0"], ["1.2", "0.4", "1"], ["0.480000"]]
 )
-def test_seconds_at_constant_rate_raise_no_doubt(keys: list[str]) -> None:
+def test_seconds_at_constant_rate_leave_no_other_reading(keys: list[str]) -> None:
     fitted = fit(keys, table_of(EVEN))
     assert frames_of(fitted) == [round(25 * parse_time(key)) for key in keys]
     assert all(flag.severity == "info" for flag in fitted.flags)
@@ -250,7 +250,7 @@ def test_frame_numbers_without_the_first_may_count_from_one() -> None:
     assert [flag.severity for flag in fitted.flags] == ["warning"]
 
 
-def test_sparse_keys_of_a_video_with_gaps_are_doubtful_where_the_readings_part() -> None:
+def test_sparse_keys_of_a_video_with_gaps_are_ambiguous_where_the_readings_part() -> None:
     times = [40 * i for i in range(60) if i not in (20, 30)]
     table = replace_rate(table_of(times), Fraction(25))
     late, early = fit(["0.0000", "0.1600", "2.0000"], table), fit(["0.0000", "0.1600", "0.7200"], table)

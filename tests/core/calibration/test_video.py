@@ -138,13 +138,13 @@ def test_views_that_fit_badly_are_left_out() -> None:
     assert solution.rms_px == pytest.approx(0.05 * np.sqrt(2), rel=0.1)
 
 
-def test_views_in_the_middle_only_are_doubted() -> None:
+def test_views_in_the_middle_only_raise_a_warning() -> None:
     wide, narrow = (
         solve(CHESSBOARD, seen_by(LENS, 12, spread), SIZE, LensModel.OPENCV_FISHEYE) for spread in (1.0, 0.1)
     )
-    assert wide.doubts == ()
+    assert wide.warnings == ()
     assert narrow.covered < wide.covered
-    assert "of the picture" in narrow.doubts[0]
+    assert "of the picture" in narrow.warnings[0]
 
 
 def test_blurred_views_and_views_like_others_are_not_chosen() -> None:

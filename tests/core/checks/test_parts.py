@@ -1,4 +1,4 @@
-"""Where a vetoed model is cut, and what is left of the view graph."""
+"""Where a rejected model is cut, and what is left of the view graph."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def welded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scene, PairTable, 
 def test_a_welded_model_is_cut_into_its_sides(welded: tuple[Scene, PairTable, pycolmap.Reconstruction]) -> None:
     _, table, model = welded
     found = prune(table, model, np.arange(N, dtype=np.float64), N)
-    assert (found.doubted, found.cuts) == (0, [WELD])
+    assert (found.n_rejected, found.cuts) == (0, [WELD])
     assert found.parts == [(0, WELD + 1), (WELD + 1, N)]
     across = (table.pairs[:, 0] <= WELD) & (table.pairs[:, 1] > WELD)
     assert not found.table.n_inliers[across].any()
@@ -70,7 +70,7 @@ def test_a_model_that_fits_everywhere_leaves_no_parts(
     graph = write_graph(tmp_path / "graph", scene, table)
     right = model_of(Case(graph, 0, N, make_settings().mapper, 0))
     found = prune(table, right, np.arange(N, dtype=np.float64), N)
-    assert (found.doubted, found.cuts, found.parts) == (0, [], [])
+    assert (found.n_rejected, found.cuts, found.parts) == (0, [], [])
 
 
 def test_where_most_pairs_are_uncalibrated_it_is_cut_whatever_the_model_says(
@@ -82,11 +82,11 @@ def test_where_most_pairs_are_uncalibrated_it_is_cut_whatever_the_model_says(
     config[across[2:]] = UNCALIBRATED
     nothing = pycolmap.Reconstruction()
     found = prune(replace(table, config=config), nothing, np.arange(N, dtype=np.float64), N)
-    assert (found.doubted, found.cuts, found.parts) == (len(across) - 2, [18], [(0, 19), (19, N)])
+    assert (found.n_rejected, found.cuts, found.parts) == (len(across) - 2, [18], [(0, 19), (19, N)])
     single = table.config.copy()
     single[across[0]] = UNCALIBRATED
     found = prune(replace(table, config=single), nothing, np.arange(N, dtype=np.float64), N)
-    assert (found.doubted, found.cuts, found.parts) == (1, [], [(0, N)])
+    assert (found.n_rejected, found.cuts, found.parts) == (1, [], [(0, N)])
     assert found.table.n_inliers[across[0]] == 0
 
 

@@ -33,7 +33,7 @@ def test_what_is_heard_wins_over_the_nearest_that_is_not() -> None:
     assert {detection: row for detection, (row, _) in chosen(rows, [0, 0, 0], [0, 0, 0]).items()} == {0: 1, 1: 2}
 
 
-def test_sparse_points_before_a_patch_overrule_it_unless_maps_or_views_show_it_there() -> None:
+def test_sparse_points_before_a_patch_contradict_it_unless_maps_or_views_show_it_there() -> None:
     assert chosen([candidate(sparse=0.1)], [6], [2]) == {}
     assert chosen([candidate(sparse=0.1)], [6], [4]) == {0: (0, float("inf"))}
     assert chosen([candidate(sparse=0.1, depth=0.8)], [6], [2]) == {0: (0, float("inf"))}

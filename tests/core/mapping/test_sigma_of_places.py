@@ -1,4 +1,4 @@
-"""How far places may be off, by rung: closed forms on plates that all cameras see at right angles."""
+"""How far places may be off, by placement method: closed forms on plates that all cameras see at right angles."""
 
 from __future__ import annotations
 

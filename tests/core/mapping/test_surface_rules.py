@@ -1,4 +1,4 @@
-"""Detections cast onto two plates: which surface is meant, what other frames say, and the lower rungs."""
+"""Detections cast onto two plates: which surface is meant, what other frames say, and the fallback methods."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def test_a_stray_sheet_that_shows_its_back_is_seen_through() -> None:
         assert xyz(one) == pytest.approx(ON_NEAR, abs=0.02)
 
 
-def test_a_blade_that_came_out_turned_is_a_place_where_witnesses_say_so() -> None:
+def test_a_blade_that_came_out_turned_is_a_place_where_views_and_depths_say_so() -> None:
     near = plates.plate((-3.0, 0.0), (-2.0, 2.0), NEAR)
     turned = type(near)(near.vertices, np.ascontiguousarray(near.faces[:, ::-1]))
     mesh = plates.joined([turned, plates.plate((-4.0, 4.0), (-3.0, 3.0), FAR)])

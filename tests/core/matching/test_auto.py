@@ -11,7 +11,7 @@ import torch
 from core.errors import BadInput
 from core.features.io import FrameFeatures
 from core.matched_pair import LIGHTGLUE, MUTUAL_NEAREST
-from core.matching.auto import GIVE_UP_AFTER, PairMatcher, Patience
+from core.matching.auto import GIVE_UP_AFTER, PairMatcher, RematchPolicy
 from core.matching.lightglue import LightGlueMatcher, rename
 from core.settings import make_settings
 from core.verification import Verifier
@@ -74,20 +74,20 @@ def test_weak_pairs_are_tried_again_and_the_better_outcome_counts(monkeypatch: p
     np.testing.assert_array_equal(kept.geometry.inliers, cheap.geometry.inliers)
 
 
-def test_patience_with_a_frame_ends_unless_something_matched_it() -> None:
+def test_a_frame_is_given_up_unless_something_matched_it() -> None:
     first, second, _ = _frames(blur=0.1)
     good = _matcher(matching__method="mutual_nearest").match(first, second)
     poor = replace(good, geometry=replace(good.geometry, inliers=good.geometry.inliers[:9]), tried_lightglue=True)
-    patience = Patience()
+    policy = RematchPolicy()
     for other in range(GIVE_UP_AFTER):
-        assert not patience.has_run_out((1, 9))
-        patience.note((other, 9), replace(poor, tried_lightglue=False))  # the cheap way says nothing about LightGlue
-        patience.note((other, 9), poor)
-    assert patience.has_run_out((1, 9))
-    assert patience.has_run_out((9, 10))
-    assert not patience.has_run_out((0, 1))
-    patience.note((8, 9), good)
-    assert not patience.has_run_out((9, 10))
+        assert not policy.gives_up((1, 9))
+        policy.note((other, 9), replace(poor, tried_lightglue=False))  # the cheap way says nothing about LightGlue
+        policy.note((other, 9), poor)
+    assert policy.gives_up((1, 9))
+    assert policy.gives_up((9, 10))
+    assert not policy.gives_up((0, 1))
+    policy.note((8, 9), good)
+    assert not policy.gives_up((9, 10))
 
 
 def tried_in_order(
@@ -97,13 +97,13 @@ def tried_in_order(
     first, second, _ = _frames(blur=0.1)
     good = _matcher(matching__method="mutual_nearest").match(first, second)
     poor = replace(good, geometry=replace(good.geometry, inliers=good.geometry.inliers[:9]), tried_lightglue=True)
-    patience, tried = Patience(n_search), list[tuple[int, int]]()
+    policy, tried = RematchPolicy(n_search), list[tuple[int, int]]()
     for pair in [(a, a + gap) for gap in range(1, window + 1) for a in range(n_frames - gap)]:
         if strong(*pair):
-            patience.note(pair, good)
-        elif not patience.has_run_out(pair):
+            policy.note(pair, good)
+        elif not policy.gives_up(pair):
             tried.append(pair)
-            patience.note(pair, poor)
+            policy.note(pair, poor)
     return tried
 
 

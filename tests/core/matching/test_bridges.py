@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.matching.bridges import (
+    COMPONENT_FRAMES,
     MAX_PAIRS,
-    PIECE_FRAMES,
     SIDE,
     agreeing,
     bridge_places,
@@ -90,8 +90,8 @@ def test_a_clip_without_texture_asks_for_nothing() -> None:
     assert sought(table(pairs, [0] * len(pairs)), N) == []
 
 
-def test_small_pieces_are_not_sought_out() -> None:
-    small = PIECE_FRAMES - 2
+def test_small_components_are_not_sought_out() -> None:
+    small = COMPONENT_FRAMES - 2
     dark = range(small, small + 10)
     pairs = sought(sequence(dark), N)
     assert len(pairs) == small * SIDE
@@ -144,16 +144,16 @@ def test_light_faces_light_over_a_dark_stretch_that_hangs_together_by_itself() -
     assert any(a in dark or b in dark for place in places[1:] for a, b in place.pairs)
 
 
-def test_no_piece_is_looked_over_by_a_smaller_one() -> None:
+def test_no_component_is_looked_over_by_a_smaller_one() -> None:
     sizes = [9, 3, 20, 5, 9]
     starts = np.cumsum([0, *sizes])
-    pieces = [np.arange(start, start + size) for start, size in zip(starts, sizes, strict=False)]
-    found = [(int(a[0]), int(b[0])) for a, b in facing(pieces)]
+    components = [np.arange(start, start + size) for start, size in zip(starts, sizes, strict=False)]
+    found = [(int(a[0]), int(b[0])) for a, b in facing(components)]
     of = {int(starts[row]): row for row in range(5)}
     assert [(of[a], of[b]) for a, b in found] == [(0, 2), (2, 4), (2, 3), (3, 4), (0, 1), (1, 2)]
 
 
-def test_within_one_piece_strong_pairs_are_believed() -> None:
+def test_within_one_component_strong_pairs_are_believed() -> None:
     extra = table([(3, 12), (4, 14)], [40, 10])
     assert agreeing(sequence(), extra, N, N).tolist() == [True, False]
 

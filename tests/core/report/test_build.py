@@ -102,8 +102,8 @@ def test_a_run_without_a_model_keeps_every_detection_and_says_why() -> None:
 
 
 def test_a_refused_model_leaves_no_mapped_row() -> None:
-    vetoed = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
-    report = build_report(vetoed)
+    refused = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
+    report = build_report(refused)
     assert report.verdict == "refused"
     assert not [row for row in report.detections if row["outcome"] == "mapped"]
     assert len(report.detections) == 6

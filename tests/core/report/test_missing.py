@@ -99,8 +99,8 @@ def test_a_further_model_that_lost_its_surface_is_told_and_one_that_never_was_is
 
 
 def test_without_a_model_the_run_is_refused_for_its_own_reasons() -> None:
-    vetoed = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
-    for record in (failed_record(), vetoed):
+    refused = replace(full_record(), state=RunState.FAILED, reason="no_reconstruction")
+    for record in (failed_record(), refused):
         assert not {"incomplete", "no_surface", "nothing_mapped"} & set(flags_of(record))
 
 

@@ -13,7 +13,7 @@ from core.io.annotations import write_rows
 from core.io.frames import write_registered
 from core.io.timeline import write_timeline
 from core.report.build import build_report
-from core.report.load import join_detections, load_tables, served_pieces
+from core.report.load import join_detections, load_tables, served_submodels
 from core.report.quality import build_quality, collect_flags
 from core.report.record import TaskRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
@@ -75,14 +75,14 @@ def folders(tmp_path: Path, *pieces: int) -> dict[str, Path]:
 def test_only_models_that_came_to_their_end_are_served(tmp_path: Path) -> None:
     made = folders(tmp_path, 0, 1, 2)
     del made["timeline@1"]
-    assert served_pieces(made) == [2]
+    assert served_submodels(made) == [2]
     tables = load_tables(made)
     assert tables.registered == [0, 10]
     assert tables.registered_further == {2: [2, 12]}
     assert [one.model for one in tables.mapped_rows or ()] == [2]
     assert [one.id for one in tables.defects] == [0, 2]
     del made["timeline"]
-    assert served_pieces(made) == []
+    assert served_submodels(made) == []
 
 
 def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
@@ -129,7 +129,7 @@ def test_with_defects_in_several_models_the_count_is_a_range_and_the_verdict_not
         assert (numbers["defects_at_least"], numbers["defects"]) == (least, len(defects))
 
 
-def test_the_part_of_a_vetoed_model_is_the_selected_case() -> None:
+def test_the_part_of_a_rejected_model_is_the_selected_case() -> None:
     record = full_record()
     flag = {"code": "parts_after_veto", "severity": "warning", "where": "frames 0-29 of seg_006_0120_0300"}
     part = case("section_000_0000_0030", 30, 900)

@@ -1,4 +1,4 @@
-"""The checks run for a case: its right model passes, measured rotations that it contradicts veto it."""
+"""The checks run for a case: its right model passes, measured rotations that it contradicts reject it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from core.viewgraph import read_table, write_table
 from tests.core.sparse.scene import make_scene, view_graph, write_graph
 
 
-def test_a_bent_model_is_vetoed_and_a_straight_one_is_not(tmp_path: Path) -> None:
+def test_a_bent_model_is_rejected_and_a_straight_one_is_not(tmp_path: Path) -> None:
     scene = make_scene(16, 600)
     case = Case(write_graph(tmp_path / "graph", scene, view_graph(scene)), 0, 16, make_settings().mapper, 0)
     result = run_case(case)
@@ -53,7 +53,7 @@ def test_a_case_says_every_column_that_it_can_know_in_their_order(tmp_path: Path
     assert bad.reason is None
 
 
-def test_without_a_model_nothing_is_vetoed(tmp_path: Path) -> None:
+def test_without_a_model_nothing_is_rejected(tmp_path: Path) -> None:
     scene = make_scene(16, 600)
     case = Case(write_graph(tmp_path / "graph", scene, view_graph(scene)), 0, 2, make_settings().mapper, 0)
     assert trust_facts(case_checks(run_case(case), case)) == {"checks": [], "vetoed": False}

@@ -53,13 +53,13 @@ def test_nothing_left_over_is_nothing_to_do(made: tuple[Scene, PairTable, Path, 
     assert attempts == []
 
 
-def test_a_vetoed_join_is_not_used(made: tuple[Scene, PairTable, Path, Any]) -> None:
+def test_a_rejected_join_is_not_used(made: tuple[Scene, PairTable, Path, Any]) -> None:
     model, attempts = joined(made, wrong=True)
     assert model is made[3]
     assert attempts[0]["outcome"] == "vetoed"
 
 
-def test_pieces_that_share_too_little_stay_apart(
+def test_submodels_that_share_too_little_stay_apart(
     made: tuple[Scene, PairTable, Path, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(joining, "OVERLAP", 2)

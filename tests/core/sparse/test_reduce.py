@@ -115,7 +115,7 @@ def test_a_winner_without_its_row_is_a_broken_plan() -> None:
 BENT: dict[str, Any] = {"vetoed": True, "checks": [{"code": "bent_model", "severity": "error"}]}
 
 
-def test_a_vetoed_case_loses_against_any_other() -> None:
+def test_a_rejected_case_loses_against_any_other() -> None:
     rows = [case("seg_000", 180, 90_000, **BENT), case("seg_001", 30, 5)]
     facts = reduce_cases(rows)
     assert [item["name"] for item in facts["ranking"]] == ["seg_001", "seg_000"]
@@ -123,7 +123,7 @@ def test_a_vetoed_case_loses_against_any_other() -> None:
     assert reduce_refined(rows[1], [case("refine_000", 220, 9, **BENT)])["best"] == "seg_001"
 
 
-def test_when_every_case_is_vetoed_the_parts_have_their_turn() -> None:
+def test_when_every_case_is_rejected_the_parts_have_their_turn() -> None:
     best = case("seg_000", 180, 9, **BENT)
     assert reduce_cases([best])["best"] == "seg_000"  # refinement still gets its chance
     refined = reduce_refined(best, [case("refine_000", 170, 9, **BENT)])
@@ -156,18 +156,18 @@ def test_without_a_part_that_passes_there_is_no_reconstruction(parts: list[Candi
 
 @pytest.mark.parametrize("cases", [[], [case("perspective_000", 170, 9, **BENT)], [case("perspective_000", 0, 0)]])
 def test_a_perspective_case_that_does_not_pass_leaves_the_run_refused(cases: list[Candidate]) -> None:
-    vetoed = reduce_refined(case("seg_000", 180, 9, **BENT), [])
+    rejected = reduce_refined(case("seg_000", 180, 9, **BENT), [])
     with pytest.raises(NoReconstruction, match="every model was vetoed; nor does a model of a perspective lens"):
-        reduce_perspective(vetoed, "every model was vetoed", cases)
-    passed = reduce_perspective(vetoed, "every model was vetoed", [*cases, case("perspective_001", 160, 9)])
+        reduce_perspective(rejected, "every model was vetoed", cases)
+    passed = reduce_perspective(rejected, "every model was vetoed", [*cases, case("perspective_001", 160, 9)])
     assert passed["best"] == "perspective_001"
     assert [(flag["code"], flag["severity"]) for flag in passed["flags"]] == [("perspective_after_veto", "warning")]
 
 
-def test_without_the_veto_the_score_alone_counts() -> None:
+def test_without_rejection_the_score_alone_counts() -> None:
     rows = [case("seg_000", 180, 9, **BENT), case("seg_001", 30, 5)]
-    assert reduce_cases(rows, veto=False)["best"] == "seg_000"
-    assert reduce_refined(rows[0], [], veto=False)["best"] == "seg_000"
+    assert reduce_cases(rows, reject=False)["best"] == "seg_000"
+    assert reduce_refined(rows[0], [], reject=False)["best"] == "seg_000"
 
 
 def test_verified_detections_count_between_trust_and_size() -> None:

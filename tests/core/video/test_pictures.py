@@ -17,8 +17,8 @@ from PIL import Image
 
 from core.errors import BadInput
 from core.video import pictures as module
+from core.video.factory import open_video
 from core.video.formats import PICTURE_CODECS
-from core.video.opening import open_video
 from core.video.pictures import digest_of_video, find_pictures, natural_key
 from core.video.probe import probe_video
 from tests.core.making_films import ffmpeg

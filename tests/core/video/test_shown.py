@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from core.errors import BadInput
 from core.video.decode import iter_frames
-from core.video.opening import reopen_video
+from core.video.factory import reopen_video
 from core.video.probe import probe_video
 from core.video.shown import shown_frames
 from core.video.table import FrameTable

@@ -7,7 +7,7 @@ import { findingName, measured, percent, reasonText, seconds } from "../model/wo
 import { Overlay } from "../scene/overlay";
 import { data, detections, detectionsOfFrame, frames, marks, questions, size, surface, surfaceReason } from "../session";
 import {
-  allFindings, asked, askPixel, blade, boxes, detection, drawing, finding, frame, layer, overlay, place, seeing, selectFrame, stepFrame, stepSeeing, type Boxes,
+  allFindings, asked, askPixel, blade, boxes, detection, drawing, finding, frame, layer, overlay, place, visibleFrames, selectFrame, stepFrame, stepVisible, type Boxes,
 } from "../state";
 import { drawn as endDrawing } from "../review";
 import { Tile } from "./marks";
@@ -71,8 +71,8 @@ export function FrameView(): JSX.Element {
           <button type="button" onClick={() => stepFrame(1)} aria-label="Next frame of the video" title="Next frame (.)">›</button>
         </div>
         <div class="choice" role="group" aria-label="Frames that show the selection">
-          <button type="button" disabled={!seeing.value.length} onClick={() => stepSeeing(-1)} aria-label="Previous frame that shows the selection" title="Previous frame of the selection ([)">«</button>
-          <button type="button" disabled={!seeing.value.length} onClick={() => stepSeeing(1)} aria-label="Next frame that shows the selection" title="Next frame of the selection (])">»</button>
+          <button type="button" disabled={!visibleFrames.value.length} onClick={() => stepVisible(-1)} aria-label="Previous frame that shows the selection" title="Previous frame of the selection ([)">«</button>
+          <button type="button" disabled={!visibleFrames.value.length} onClick={() => stepVisible(1)} aria-label="Next frame that shows the selection" title="Next frame of the selection (])">»</button>
         </div>
         <button type="button" onClick={stepBoxes} title="Boxes and masks (X)" aria-label={`Boxes and masks: ${boxes.value}; change`}>Boxes: {boxes.value}</button>
         <label class="slide">Overlay <input type="range" min="0" max="1" step="0.05" value={overlay.value} disabled={!one?.registered || !surface} aria-label="How opaque the surface lies over the frame" onInput={(event) => (overlay.value = Number(event.currentTarget.value))} /></label>
@@ -235,7 +235,7 @@ function Said(): JSX.Element {
 
 /** Frames that see what is selected, best first. */
 function Ranked(): JSX.Element | null {
-  const list = seeing.value;
+  const list = visibleFrames.value;
   if (!list.length) return null;
   const subject = place.value.p ? "this point" : findingName(finding.value?.id ?? 0);
   const detected = new Set(finding.value?.detections.map((id) => detections.get(id)?.frame) ?? []);

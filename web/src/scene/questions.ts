@@ -6,7 +6,7 @@ import { dot, norm, poseOf, sub, toCamera, toWorld, type Pose } from "../model/p
 import type { Surface } from "./surface";
 
 /** What a pixel shows; without a point `reason` is a code of the detections' table. */
-export type Shown =
+export type SurfaceHit =
   | { readonly reason: "frame_not_registered" | "outside_roi" | "off_surface" | "occluded" | "no_surface" }
   | {
       readonly reason: null;
@@ -18,7 +18,7 @@ export type Shown =
       readonly support: number;
     };
 
-export interface Seeing {
+export interface VisibleFrame {
   readonly frame: number;
   /** cos(incidence) / squared distance, relative to the best frame. */
   readonly quality: number;
@@ -48,7 +48,7 @@ export class Questions {
   }
 
   /** What a pixel of a frame shows. */
-  pointAt(frame: number, x: number, y: number): Shown {
+  pointAt(frame: number, x: number, y: number): SurfaceHit {
     const pose = this.poses.get(frame);
     if (!pose || !this.lens) return { reason: "frame_not_registered" };
     const [x0, y0, x1, y1] = this.crop;
@@ -64,9 +64,9 @@ export class Questions {
   }
 
   /** Registered frames that see a place of the surface, best first. */
-  framesSeeing(place: Vec3, normal: Vec3): Seeing[] {
+  visibleFrames(place: Vec3, normal: Vec3): VisibleFrame[] {
     const least = Math.cos((MAX_INCIDENCE_DEG * Math.PI) / 180);
-    const seeing: Seeing[] = [];
+    const visible: VisibleFrame[] = [];
     for (const pose of this.poses.values()) {
       const at = this.pixelOf(pose.frame, place);
       const [x0, y0, x1, y1] = this.crop;
@@ -75,10 +75,10 @@ export class Questions {
       const distance = norm(towards);
       const cosine = dot(towards, normal) / distance;
       if (cosine <= least || !this.surface?.clear(pose.center, place, TOLERANCE_SPACINGS * this.spacing)) continue;
-      seeing.push({ frame: pose.frame, quality: cosine / distance ** 2, x: at[0], y: at[1] });
+      visible.push({ frame: pose.frame, quality: cosine / distance ** 2, x: at[0], y: at[1] });
     }
-    const best = Math.max(...seeing.map((one) => one.quality), 1e-300);
-    return seeing
+    const best = Math.max(...visible.map((one) => one.quality), 1e-300);
+    return visible
       .map((one) => ({ ...one, quality: one.quality / best }))
       .sort((a, b) => b.quality - a.quality || a.frame - b.frame);
   }

@@ -1,4 +1,4 @@
-"""Ends and single frames that hang on a model by next to nothing: taken off before they are believed.
+"""Weakly connected images of a model, at the ends and single ones: taken off before they are believed.
 
 Frames of a dark stretch, or of another part of the scene, can be registered by a few chance matches. They then sit
 anywhere, and what was right before is a part of a model that is wrong as a whole.
@@ -19,7 +19,7 @@ TYPICAL_SHARE = 0.5
 """A frame with this share of a typical frame's points stays in any model, however few they are."""
 
 
-def drop_loose_ends(model: pycolmap.Reconstruction, n_search: int) -> tuple[pycolmap.Reconstruction, list[int]]:
+def drop_weak_ends(model: pycolmap.Reconstruction, n_search: int) -> tuple[pycolmap.Reconstruction, list[int]]:
     """The part of a model between weak cuts that has the most images, and the frames taken off.
 
     Args:
@@ -27,7 +27,7 @@ def drop_loose_ends(model: pycolmap.Reconstruction, n_search: int) -> tuple[pyco
         n_search: frames from this on are out of order.
 
     Returns:
-        The model itself when nothing is loose, else a copy.
+        The model itself when no image is weakly connected, else a copy.
     """
     frames = np.array(sorted(image_id - 1 for image_id in model.reg_image_ids()), np.int64)
     ordered = frames[frames < n_search]
@@ -51,7 +51,7 @@ def drop_loose_ends(model: pycolmap.Reconstruction, n_search: int) -> tuple[pyco
     return work, sorted(dropped + lost)
 
 
-def drop_faint_frames(model: pycolmap.Reconstruction) -> tuple[pycolmap.Reconstruction, list[int]]:
+def drop_weak_images(model: pycolmap.Reconstruction) -> tuple[pycolmap.Reconstruction, list[int]]:
     """The model without the frames that see next to none of its points, and these frames.
 
     In a dark stretch that pairs across it span no cut is weak, and what was registered inside sits anywhere: on a
@@ -61,19 +61,19 @@ def drop_faint_frames(model: pycolmap.Reconstruction) -> tuple[pycolmap.Reconstr
         model: `pycolmap.Reconstruction`, image_id = index + 1; not changed.
 
     Returns:
-        The model itself when no frame is faint, else a copy.
+        The model itself when no image is weakly connected, else a copy.
     """
     counts = {image_id - 1: model.image(image_id).num_points3D for image_id in sorted(model.reg_image_ids())}
     if not counts:
         return model, []
     typical = float(np.median(list(counts.values())))
     limit = min(max(WEAK_POINTS, WEAK_SHARE * typical), TYPICAL_SHARE * typical)
-    faint = [frame for frame, count in counts.items() if count < limit]
-    if not faint:
+    weak_images = [frame for frame, count in counts.items() if count < limit]
+    if not weak_images:
         return model, []
     work = pycolmap.Reconstruction(model)
-    _take_off(work, faint)
-    return work, faint
+    _take_off(work, weak_images)
+    return work, weak_images
 
 
 def _points_of(model: pycolmap.Reconstruction, frame: int) -> set[int]:

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     import pycolmap
 
 MIN_FRAMES = 12
-"""A piece with fewer frames of its own shows too little to stand for itself."""
+"""A submodel with fewer frames of its own shows too little to stand for itself."""
 
 
-def find_pieces(
+def find_submodels(
     graph: Path,
     table: PairTable,
     taken: Collection[int],
@@ -45,7 +45,7 @@ def find_pieces(
         settings: of the mapper.
         seed: of its random choices.
         limit: models, at most.
-        is_wrong: veto of the checks.
+        is_wrong: rejection by the checks.
         progress: called with groups done and groups in all.
     """
     left = np.array([frame not in taken for frame in range(n_frames)])

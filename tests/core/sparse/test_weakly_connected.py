@@ -5,7 +5,7 @@ import pytest
 
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case
-from core.sparse.loose import drop_faint_frames, drop_loose_ends
+from core.sparse.weakly_connected import drop_weak_ends, drop_weak_images
 from tests.core.sparse.scene import make_scene, model_of, view_graph, write_graph
 
 N, CUT = 24, 18
@@ -32,14 +32,14 @@ def frames(model: pycolmap.Reconstruction) -> list[int]:
 
 
 def test_a_whole_model_stays_as_it_is(model: pycolmap.Reconstruction) -> None:
-    same, dropped = drop_loose_ends(model, N)
+    same, dropped = drop_weak_ends(model, N)
     assert same is model
     assert dropped == []
 
 
 def test_the_smaller_side_of_a_weak_cut_is_taken_off(model: pycolmap.Reconstruction) -> None:
     work = joined_by(model, 12)
-    left, dropped = drop_loose_ends(work, N)
+    left, dropped = drop_weak_ends(work, N)
     assert dropped == list(range(CUT, N))
     assert frames(left) == list(range(CUT))
     assert frames(work) == list(range(N))
@@ -49,9 +49,9 @@ def test_the_smaller_side_of_a_weak_cut_is_taken_off(model: pycolmap.Reconstruct
 
 def test_what_is_out_of_order_stays_with_what_it_sees(model: pycolmap.Reconstruction) -> None:
     """The frames from 18 on are out of order and see what the frames before them see."""
-    _, dropped = drop_loose_ends(joined_by(model, 0, cut=5), CUT)
+    _, dropped = drop_weak_ends(joined_by(model, 0, cut=5), CUT)
     assert set(range(4)) <= set(dropped) <= set(range(10))
-    _, dropped = drop_loose_ends(joined_by(model, 0, cut=13), CUT)
+    _, dropped = drop_weak_ends(joined_by(model, 0, cut=13), CUT)
     assert set(range(14, N)) <= set(dropped) <= set(range(8, N))
 
 
@@ -66,9 +66,9 @@ def thinned(model: pycolmap.Reconstruction, frame: int, count: int) -> pycolmap.
 
 def test_a_frame_that_sees_next_to_nothing_is_taken_off_though_no_cut_is_weak(model: pycolmap.Reconstruction) -> None:
     work = thinned(model, 10, 25)
-    _, cut = drop_loose_ends(work, N)
+    _, cut = drop_weak_ends(work, N)
     assert cut == []
-    left, dropped = drop_faint_frames(work)
+    left, dropped = drop_weak_images(work)
     assert dropped == [10]
     assert frames(left) == [frame for frame in range(N) if frame != 10]
     assert frames(work) == list(range(N))
@@ -76,10 +76,10 @@ def test_a_frame_that_sees_next_to_nothing_is_taken_off_though_no_cut_is_weak(mo
 
 
 def test_frames_that_see_what_is_typical_stay(model: pycolmap.Reconstruction) -> None:
-    same, dropped = drop_faint_frames(model)
+    same, dropped = drop_weak_images(model)
     assert same is model
     assert dropped == []
-    _, dropped = drop_faint_frames(thinned(model, 10, 40))
+    _, dropped = drop_weak_images(thinned(model, 10, 40))
     assert dropped == []
 
 
@@ -87,4 +87,4 @@ def test_a_model_with_few_points_everywhere_keeps_its_frames(model: pycolmap.Rec
     poor = model
     for frame in range(N):
         poor = thinned(poor, frame, 25)
-    assert drop_faint_frames(poor)[1] == []
+    assert drop_weak_images(poor)[1] == []

@@ -1,4 +1,4 @@
-"""Depth maps as witnesses: is there a surface at a place, or does a map see through it?
+"""Depth consistency of a place: is there a surface at a place, or does a map see through it?
 
 Poisson closes gaps with surface that nobody saw, and stray depths leave sheets before the blades. A depth
 map that measures something farther away in the direction of a place has seen through it.

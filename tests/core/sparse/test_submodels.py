@@ -1,4 +1,4 @@
-"""What the final model leaves over becomes a model of its own, if it is strong and not vetoed."""
+"""What the final model leaves over becomes a model of its own, if it is strong and not rejected."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 from core.settings import make_settings
 from core.sparse.cases import Case
-from core.sparse.pieces import MIN_FRAMES, find_pieces, groups_of
+from core.sparse.submodels import MIN_FRAMES, find_submodels, groups_of
 from core.stage import StageTask
 from core.stages import pieces as stage
 from core.viewgraph import PairTable
@@ -50,7 +50,7 @@ def broken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scene, PairTable, 
 def pieces(
     graph: Path, table: PairTable, taken: range, *, limit: int = 2, wrong: bool = False
 ) -> list[pycolmap.Reconstruction]:
-    return find_pieces(
+    return find_submodels(
         graph,
         table,
         set(taken),
@@ -79,7 +79,7 @@ def test_frames_of_an_earlier_model_stay_with_it(broken: tuple[Scene, PairTable,
     assert len(pieces(graph, table, range(N - 2, N), limit=1)) == 1
 
 
-def test_weak_and_vetoed_pieces_are_none(broken: tuple[Scene, PairTable, Path]) -> None:
+def test_weak_and_rejected_submodels_are_none(broken: tuple[Scene, PairTable, Path]) -> None:
     _, table, graph = broken
     assert pieces(graph, table, range(N - MIN_FRAMES + 1)) == []
     assert pieces(graph, table, range(CUT), wrong=True) == []

@@ -1,4 +1,4 @@
-"""Lower rungs: poses between two registered views with the error of such poses, boxes carried by matches."""
+"""Fallback methods: poses between two registered views with the error of such poses, boxes carried by matches."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.mapping.ladder import MIN_MATCHES, between, carried_over
+from core.mapping.fallback_methods import MIN_MATCHES, between, carried_over
 from core.scene.views import Views
 from tests.core import making_plates as plates
 

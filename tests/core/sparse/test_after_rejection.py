@@ -1,4 +1,4 @@
-"""After a veto: the graph without the pairs over the weld and its parts mapped, or all of it with another lens."""
+"""After a rejection: the graph without the pairs over the weld and its parts mapped, or all of it with another lens."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ SIZES: Facts = {
     "n_frames": FEW,
     "n_search": FEW,
 }
-VETOED: Facts = {"best": "seg_000_0000_0016", "start": 0, "end": FEW, "vetoed": True, "codes": "bent_model"}
+REJECTED: Facts = {"best": "seg_000_0000_0016", "start": 0, "end": FEW, "vetoed": True, "codes": "bent_model"}
 WHY = "every model was vetoed by the checks"
 
 
@@ -120,7 +120,7 @@ def test_the_perspective_lens_is_found_and_the_cameras_with_it(tmp_path: Path) -
     features = run.add("features/000")
     for frame, found in enumerate(scene.features):
         write_features(features / f"{frame:04d}.npz", found)
-    run.add("reduce_refine", VETOED)
+    run.add("reduce_refine", REJECTED)
     run.add("reduce_parts", {"best": "", "why": WHY})
     taken_for_fisheye = replace(scene, lens=LENS)
     table = view_graph(taken_for_fisheye)

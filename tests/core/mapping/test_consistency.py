@@ -9,7 +9,7 @@ import pytest
 
 from core.mapping.casting import depth_agreement
 from core.mapping.confidence import Parts, confidence
-from core.mapping.depth_witness import no_depth_maps, seen_share
+from core.mapping.depth_consistency import no_depth_maps, seen_share
 from core.mapping.patches import split_patches
 from core.mapping.pixels import footprint
 from core.mapping.surface import Surface
@@ -59,7 +59,7 @@ PARTS = Parts(12, 3, 2, 0.6, 0.5, 0.1, 0.5, 0.6, 2.0, 0.5, 2, 0.7)
         ({"support": 8}, {"support": 1, "same_label": 1}),
         ({"depth": 1.0}, {"depth": 0.1}),
         ({"support": 5, "same_label": 5}, {"support": 5, "same_label": 0}),
-        ({"doubts": 0}, {"doubts": 2}),
+        ({"model_warnings": 0}, {"model_warnings": 2}),
         ({"peers": 9}, {"peers": 0}),
     ],
 )

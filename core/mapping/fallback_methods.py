@@ -1,4 +1,4 @@
-"""Lower rungs: places for detections whose frame has no pose, or whose pixels meet no supported surface.
+"""Fallback methods: places for detections whose frame has no pose, or whose pixels meet no supported surface.
 
 They are estimates and are marked `approximate`; none of them is ever counted with the mapped ones.
 """
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from core.geometry.boxes import in_box
-from core.mapping.casting import Sight
+from core.mapping.casting import RayBundle
 from core.mapping.scene import Scene
 from core.scene.detection import PlacementMethod
 from core.scene.views import Views
@@ -33,43 +33,43 @@ class Estimate:
     """A place that was not found by casting onto the surface."""
 
     place: F64
-    rung: PlacementMethod
+    method: PlacementMethod
     sigma: float
 
 
-def from_depth_map(scene: Scene, sight: Sight) -> Estimate | None:
+def from_depth_map(scene: Scene, bundle: RayBundle) -> Estimate | None:
     """The nearest surface that the frame's own depth map shows in the box."""
-    if sight.view is None or sight.frame not in scene.depth.frames:
+    if bundle.view is None or bundle.frame not in scene.depth.frames:
         return None
-    rays = scene.views.rays(sight.samples.xy, sight.R)
-    distance, _ = scene.depth.distances(sight.frame, sight.origin + rays)
+    rays = scene.views.rays(bundle.samples.xy, bundle.R)
+    distance, _ = scene.depth.distances(bundle.frame, bundle.origin + rays)
     valid = np.flatnonzero(distance > 0)
     if len(valid) < MIN_POINTS:
         return None
-    points = sight.origin + distance[valid, None] * rays[valid]
-    return _nearest_surface(points, distance[valid], scene, sight, PlacementMethod.DEPTH)
+    points = bundle.origin + distance[valid, None] * rays[valid]
+    return _nearest_surface(points, distance[valid], scene, bundle, PlacementMethod.DEPTH)
 
 
-def from_sparse_points(scene: Scene, sight: Sight) -> Estimate | None:
+def from_sparse_points(scene: Scene, bundle: RayBundle) -> Estimate | None:
     """The nearest surface that the sparse points in the box show."""
-    if sight.view is None:
+    if bundle.view is None:
         return None
-    xy, _, points = scene.sparse.of(int(scene.views.frame_index[sight.view]))
-    inside = in_box(xy, sight.box_px)
+    xy, _, points = scene.sparse.of(int(scene.views.frame_index[bundle.view]))
+    inside = in_box(xy, bundle.box_px)
     if inside.sum() < MIN_POINTS:
         return None
-    distance = np.linalg.norm(points[inside] - sight.origin, axis=1)
-    return _nearest_surface(points[inside], distance, scene, sight, PlacementMethod.SPARSE)
+    distance = np.linalg.norm(points[inside] - bundle.origin, axis=1)
+    return _nearest_surface(points[inside], distance, scene, bundle, PlacementMethod.SPARSE)
 
 
-def _nearest_surface(points: F64, distance: F64, scene: Scene, sight: Sight, rung: PlacementMethod) -> Estimate:
+def _nearest_surface(points: F64, distance: F64, scene: Scene, bundle: RayBundle, method: PlacementMethod) -> Estimate:
     """Mean of the points about as far away as the nearest quarter of them."""
-    x1, y1, x2, y2 = sight.box_px
+    x1, y1, x2, y2 = bundle.box_px
     # One of the distances, so that at least its point is kept: between two far apart there is none.
     near = float(np.quantile(distance, NEAR_SHARE, method="lower"))
     kept = np.abs(distance - near) <= near * max(x2 - x1, y2 - y1) / scene.focal_px
     place = points[kept].mean(axis=0)
-    return Estimate(place, rung, float(np.linalg.norm(points[kept] - place, axis=1).mean()))
+    return Estimate(place, method, float(np.linalg.norm(points[kept] - place, axis=1).mean()))
 
 
 def carried_over(own_xy: F64, other_xy: F64, box_px: tuple[float, float, float, float]) -> F64 | None:

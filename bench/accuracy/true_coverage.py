@@ -80,12 +80,14 @@ def true_coverage(truth: Truth, row: TrueRow, frames: Sequence[int], seed: int =
         seed: of the points drawn.
     """
     points, normals = _drawn(truth, seed)
+    if not len(points):
+        return {}
     at_all, usable = true_sightings(truth, points, normals, _thinned(frames))
     shown = at_all.sum(axis=1) >= 2
     blades, counts = np.unique(row.blade(points[shown]), return_counts=True)
     found = {}
     for blade, count in zip(blades.tolist(), counts.tolist(), strict=True):
-        if count >= LEAST_SHARE * counts.max():
+        if count >= LEAST_SHARE * int(counts.max()):
             own = usable[shown][row.blade(points[shown]) == blade].sum(axis=1)
             by_views = {least: float((own >= least).mean()) for least in LEAST_VIEWS}
             found[int(blade)] = TrueCoverage(count / int(counts.max()), by_views)
@@ -98,7 +100,7 @@ def _thinned(frames: Sequence[int]) -> list[int]:
 
 
 def _drawn(truth: Truth, seed: int) -> tuple[F64, F64]:
-    """Points evenly over the sides of the true blades, with unit normals."""
+    """Points evenly over the sides of the true blades, with unit normals; none of a hub alone."""
     corners = truth.vertices[truth.faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(cross, axis=1)
@@ -106,6 +108,8 @@ def _drawn(truth: Truth, seed: int) -> tuple[F64, F64]:
     middle = corners.mean(axis=1)
     outward = middle * np.array([1.0, 1.0, 0.0]) / np.hypot(middle[:, :1], middle[:, 1:2])
     sides = np.flatnonzero(np.abs((outward * normals).sum(axis=1)) <= RADIAL_COSINE)
+    if not len(sides):
+        return np.zeros((0, 3)), np.zeros((0, 3))
     rng = np.random.default_rng(seed)
     chosen = rng.choice(sides, POINTS, p=doubled[sides] / doubled[sides].sum())
     root, share = np.sqrt(rng.random(POINTS))[:, None], rng.random(POINTS)[:, None]

@@ -91,10 +91,10 @@ SPECIAL: tuple[Case, ...] = (
 )
 
 
-def _halved(scene: Scene) -> Scene:
+def halved(case: Case) -> Case:
     """With half of the pixels to a side: what is seen of a true surface hardly depends on them."""
-    lens = replace(scene.lens, width=scene.lens.width // 2, height=scene.lens.height // 2)
-    return replace(scene, lens=lens)
+    lens = replace(case.scene.lens, width=case.scene.lens.width // 2, height=case.scene.lens.height // 2)
+    return replace(case, scene=replace(case.scene, lens=lens))
 
 
 def _whole(scenes: Sequence[Scene]) -> tuple[Case, ...]:
@@ -102,6 +102,6 @@ def _whole(scenes: Sequence[Scene]) -> tuple[Case, ...]:
 
 
 FAMILIES: dict[str, tuple[Case, ...]] = {
-    name: tuple(replace(case, scene=_halved(case.scene)) for case in cases)
+    name: tuple(halved(case) for case in cases)
     for name, cases in (("special", SPECIAL), ("suite", _whole(SUITE)), ("drawn", _whole(DRAWN)))
 }

@@ -105,8 +105,8 @@ def _score(
     ]
     numbers, blades = _votes(model, sim3, row, truth, own)
     numbering = _numbering(document, direction, numbers, blades)
-    if numbering is None:
-        return score
+    if numbering is None:  # no place has a blade, so which number is which does not matter
+        return {**score, "detections": _detections(own, Numbering(1, 0), row, truth)}
     agrees = [number == numbering.number(blade) for number, blade in zip(numbers, blades, strict=True)]
     score["surface_blade_right"] = float(np.mean(agrees)) if model.blade_of_vertex is not None else None
     score["detections"] = _detections(own, numbering, row, truth)

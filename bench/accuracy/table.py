@@ -49,7 +49,9 @@ def _row_rows(number: str, row: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield f"{name} right / wrong / unknown, of mapped detections", f"{counts} of {one['count']}"
     yield "span within 0.05; median error", f"{one['span_within']} of {one['span']}; {_text(one['span_median'])}"
     yield "root or tip right", f"{one['end_right']} of {one['end_told']}"
-    seen = row["coverage"]
+    seen = row.get("coverage")
+    if seen is None:
+        return
     yield "coverage: blades seen of those in view", " of ".join(str(count) for count in seen["seen_of_in_view"])
     within = f"{_text(seen['views_within'])}; {_text(seen['views_error_median'])}"
     yield "coverage by views: share within 0.05; median error", within

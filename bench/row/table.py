@@ -93,7 +93,7 @@ def totals(found: Sequence[Found]) -> list[str]:
     views = [
         abs(blade[f"views_{least}"] - blade[f"true_views_{least}"])
         for score in known
-        for blade in score["coverage"]["blades"]
+        for blade in (score.get("coverage") or {"blades": ()})["blades"]
         if blade["blade"] is not None
         for least in (2, 3, 5)
     ]

@@ -6,7 +6,7 @@ RESULT ?= $(OUT)
 TRUTH ?= samples/truth
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo web lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-real bench-inputs bench-service soak mutate versions lock clean
+.PHONY: help setup demo web lint docs check test test-long bench-speed bench-accuracy bench-scenes bench-row bench-real bench-inputs bench-service soak mutate versions lock clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 18
@@ -53,6 +53,9 @@ bench-accuracy: setup ## score RESULT (default out/demo) against TRUTH (default 
 
 bench-scenes: setup ## render, run and score the suite of scenes (an hour and a half), in out/scenes
 	$(BIN)/bladeatlas-bench scenes out/scenes $(SCENES)
+
+bench-row: setup ## find and score the row of blades on true surfaces (half an hour), in out/row; ROW="--result RESULT TRUTH --unknown RESULT" adds results
+	$(BIN)/bladeatlas-bench row out/row $(ROW)
 
 bench-real: setup ## run real clips beside COLMAP, from the checkouts in SOURCES (docs/experiments/real-footage.md), in out/real
 	$(BIN)/bladeatlas-bench real out/real $(if $(SOURCES),--sources $(SOURCES)) $(REAL)

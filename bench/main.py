@@ -11,6 +11,7 @@ from pathlib import Path
 from bench import boards, inputs, measurements, verdicts
 from bench.mutate import command as mutate
 from bench.real import command as real
+from bench.row import command as row
 from bench.scenes import command as scenes
 from bench.scenes import variants_command as variants
 from bench.service import simulate
@@ -55,6 +56,9 @@ def make_parser() -> argparse.ArgumentParser:
     scenes_parser = commands.add_parser("scenes", help="render, run and score the scenes of the suite")
     scenes.add_arguments(scenes_parser)
     scenes_parser.set_defaults(run=scenes.command)
+    row_parser = commands.add_parser("row", help="find the row of blades on true surfaces and in results, and score it")
+    row.add_arguments(row_parser)
+    row_parser.set_defaults(run=row.command)
     variants_parser = commands.add_parser("variants", help="run clips made from a clip: fewer frames, dark frames")
     variants.add_arguments(variants_parser)
     variants_parser.set_defaults(run=variants.command)

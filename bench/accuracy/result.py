@@ -13,11 +13,13 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.errors import BadInput
-from core.outputs import model_folder, model_numbers
+from core.json_files import read_json
+from core.outputs import DEFECT_SURFACE, FUSED, ROW, SURFACE, model_folder, model_numbers
 from core.report.csv_form import read_csv
 from core.surface.ply import Mesh, read_mesh
 
 F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,10 @@ class ResultModel(Registered):
     number: int
     mesh: Mesh | None
     cloud: Mesh | None
+    row: dict[str, Any] | None = None
+    """Its `row.json`; None in results of before."""
+    blade_of_vertex: tuple[F64, I32] | None = None
+    """(n, 3) vertices of the coloured surface and (n,) numbers of their blades, 0 = none; None where it tells none."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +113,26 @@ def _load_model(number: int, root: Path, sources: Mapping[str, int]) -> ResultMo
         cameras.centers,
         cameras.rotations,
         number=number,
-        mesh=_surface(root / "dense/mesh_poisson.ply"),
-        cloud=_surface(root / "dense/fused.ply"),
+        mesh=_surface(root / SURFACE),
+        cloud=_surface(root / FUSED),
+        row=_row(root / ROW),
+        blade_of_vertex=_blades(_surface(root / DEFECT_SURFACE)),
     )
+
+
+def _blades(mesh: Mesh | None) -> tuple[F64, I32] | None:
+    blade = None if mesh is None else mesh.extra.get("blade")
+    return None if mesh is None or blade is None else (mesh.vertices, blade.astype(np.int32))
+
+
+def _row(path: Path) -> dict[str, Any] | None:
+    try:
+        row: dict[str, Any] = read_json(path)
+    except FileNotFoundError:
+        return None
+    except ValueError as error:
+        raise BadInput(f"{path.name} cannot be read: {error}", where=path.name) from None
+    return row
 
 
 def _surface(path: Path) -> Mesh | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from bench.accuracy.placement import (
     score_sizes,
 )
 from bench.accuracy.result import Result, ResultModel, load_result
+from bench.accuracy.row import score_rows
 from bench.accuracy.surface import Reference, make_reference, score_surface
 from bench.accuracy.truth import Truth, load_truth
 from core.errors import BadInput
@@ -27,8 +29,9 @@ def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
     """Score a result folder against a truth folder; the same input gives the same numbers.
 
     Returns:
-        {frames, cameras, mesh, cloud, placement, defects, sizes, confidence, models}: the headline is model 0,
-        `models` holds the further ones by number. What cannot be measured is None.
+        {frames, cameras, mesh, cloud, placement, defects, sizes, rows, confidence, models}: the headline is model 0,
+        `models` holds the further ones by number; `rows` is by number of the model (`score_rows`). What cannot be
+        measured is None.
     """
     truth, result = load_truth(truth_folder), load_result(result_folder)
     _check_frames(result, truth)
@@ -49,9 +52,20 @@ def score_result(result_folder: Path, truth_folder: Path) -> dict[str, Any]:
         "placement": score_placements(placements, persistence_by_record(result.defects)),
         "defects": score_defects(result.defects, placements, truth, alignments),
         "sizes": score_sizes(result.defects, truth, alignments),
+        "rows": score_rows(result, truth, alignments, placements),
         "confidence": score_confidence(placements),
         "models": {str(number): model for number, model in scored.items()},
     }
+
+
+def score_row_of(result_folder: Path, truth_folder: Path) -> dict[str, Any] | None:
+    """The row of a result's first model alone (`score_rows`); None where it has none, or the truth tells of no row."""
+    truth, result = load_truth(truth_folder), load_result(result_folder)
+    _check_frames(result, truth)
+    first = {number: model for number, model in result.models.items() if number == 0}
+    alignments = {number: align(model.centers, truth.centers[model.source_indices]) for number, model in first.items()}
+    placements = place_detections(result.detections, truth, alignments)
+    return score_rows(replace(result, models=first), truth, alignments, placements).get("0")
 
 
 def _check_frames(result: Result, truth: Truth) -> None:

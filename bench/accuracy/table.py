@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 
@@ -21,8 +21,45 @@ def format_score(score: dict[str, Any]) -> str:
     rows.append(("confidence ECE, AUROC", f"{_text(confidence['ece'])}, {_text(confidence['auroc'])}"))
     for number, model in score["models"].items():
         rows += _model_rows(model, f"model {number}: ")
+    return "\n\n".join([_lines(rows), *(_lines(list(_row_rows(n, one))) for n, one in score["rows"].items())])
+
+
+def _lines(rows: Sequence[tuple[str, str]]) -> str:
     width = max(len(name) for name, _ in rows)
     return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _row_rows(number: str, row: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """The table of its own that the row of a model has."""
+    known = row["reason"] is None
+    yield f"row of blades, model {number}", row["status"] if known else f"{row['status']} ({row['reason']})"
+    yield "blades in view, a row was to be found", f"{row['blades_in_view']}, {_text(row['row_expected'])}"
+    if not known:
+        return
+    yield "right (pitch within 2 %, axis within 2 degrees)", _text(row["right"])
+    yield "pitch (degrees), error (%)", f"{_text(row['pitch_deg'])}, {_text(100.0 * row['pitch_error'])}"
+    axis = (_text(row.get(name)) for name in ("axis_error_deg", "axis_off_mm"))
+    yield "axis: error (degrees), off (mm)", " / ".join(axis)
+    yield "surface with its right blade", _text(row.get("surface_blade_right"))
+    one = row.get("detections")
+    if one is None:
+        return
+    for name in ("blade", "side"):
+        counts = " / ".join(str(one[f"{name}_{what}"]) for what in ("right", "wrong", "unknown"))
+        yield f"{name} right / wrong / unknown, of mapped detections", f"{counts} of {one['count']}"
+    yield "span within 0.05; median error", f"{one['span_within']} of {one['span']}; {_text(one['span_median'])}"
+    yield "root or tip right", f"{one['end_right']} of {one['end_told']}"
+    seen = row.get("coverage")
+    if seen is None:
+        return
+    yield "coverage: blades seen of those in view", " of ".join(str(count) for count in seen["seen_of_in_view"])
+    within = f"{_text(seen['views_within'])}; {_text(seen['views_error_median'])}"
+    yield "coverage by views: share within 0.05; median error", within
+    yield "coverage: median error of the share reconstructed", _text(seen["share_error_median"])
+    for blade in seen["blades"]:
+        told = " ".join(_text(blade.get(name)) for name in ("share", "views_2", "views_3", "views_5"))
+        true = " ".join(_text(blade[f"true_{name}"]) for name in ("share", "views_2", "views_3", "views_5"))
+        yield f"  blade {_text(blade['blade'])}: share, by 2, 3, 5 views (true)", f"{told} ({true})"
 
 
 def _model_rows(model: dict[str, Any], prefix: str) -> Iterator[tuple[str, str]]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.accuracy.true_row import TrueRow, true_row
 from core.errors import BadInput, StageFailed
 from core.geometry.nearest import nearest_index
 from core.surface.ply import read_mesh
@@ -19,6 +20,8 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 MM_PER_M = 1000.0
+RADII = 2000
+"""Between the middle of a picture and its corner, that directions are known at; between them they are straight."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,15 @@ class Lens:
         scale = np.where(r > 0, np.sin(theta) / np.where(r > 0, r, 1.0), 1.0 / self.focal_px)
         return np.stack([dx * scale, dy * scale, np.cos(theta)], axis=1)
 
+    def project(self, in_cam: F64) -> F64:
+        """(n, 2) image points of (n, 3) points in the camera frame; NaN for those beyond the corners' directions."""
+        radii = np.linspace(0.0, np.hypot(self.width, self.height) / 2, RADII)
+        angles = radii / self.focal_px + self.k3 * radii**3
+        away = np.hypot(in_cam[:, 0], in_cam[:, 1])
+        r = np.interp(np.arctan2(away, in_cam[:, 2]), angles, radii, right=np.nan)
+        scale = r / np.maximum(away, 1e-300)
+        return np.stack([in_cam[:, 0] * scale + self.width / 2, in_cam[:, 1] * scale + self.height / 2], axis=1)
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -81,6 +93,8 @@ class Truth:
     """Visible defects of every source frame."""
     vertices: F64
     faces: I32
+    row: TrueRow | None = None
+    """The row of blades, where the truth tells of one."""
 
     @property
     def n_frames(self) -> int:
@@ -115,6 +129,7 @@ def load_truth(folder: Path) -> Truth:
             ],
             vertices=mesh.vertices * MM_PER_M,
             faces=mesh.faces,
+            row=true_row(defects, MM_PER_M),
         )
     except StageFailed as error:
         raise BadInput(error.message, where="surface.ply") from None

@@ -18,6 +18,8 @@ SPAN_CELLS, LOOP_CELLS = 72, 112
 KINDS = ("coating_loss", "burn", "crack", "dent", "nick")
 DENT_DEPTH = 0.35
 """Depth of a dent at its deepest, in radii."""
+RING_MM = 0.2
+"""By which a ring lies inside of the ends of the blades."""
 SPARE_BLADES = 3
 """Blades on each side of those that come into view."""
 
@@ -63,7 +65,8 @@ def _section(u: F64, side: F64, chord: F64) -> tuple[F64, F64]:
 
 def _place(scene: Scene, angle: F64, span: F64, along: F64, across: F64) -> F64:
     """Points of a blade in the rotor's frame from its section coordinates."""
-    stagger = np.radians(28.0 + 22.0 * span)  # twisted from root to tip
+    at_root, at_tip = np.radians(scene.stagger_deg)
+    stagger = at_root + (at_tip - at_root) * span
     tangential = along * np.sin(stagger) + across * np.cos(stagger)
     axial = along * np.cos(stagger) - across * np.sin(stagger)
     radius = HUB_MM + span * HEIGHT_MM
@@ -98,20 +101,32 @@ def build_row(scene: Scene) -> Row:
     defects = _choose_defects(scene, in_view, rng)
     vertices, faces = [], []
     offset = 0
-    for blade in range(-SPARE_BLADES, in_view + SPARE_BLADES + 1):
+    for blade in _present(scene, in_view):
         points, triangles = _blade(scene, blade, [defect for defect in defects if defect.blade == blade])
         vertices.append(points)
         faces.append(triangles + offset)
         offset += len(points)
-    hub, triangles = _hub(scene, in_view)
-    all_vertices = np.concatenate([*vertices, hub])
-    all_faces = np.concatenate([*faces, triangles + offset]).astype(np.int32)
+    for radius in (HUB_MM + RING_MM, *((HUB_MM + HEIGHT_MM - RING_MM,) if scene.shroud else ())):
+        points, triangles = _ring(scene, in_view, radius)
+        vertices.append(points)
+        faces.append(triangles + offset)
+        offset += len(points)
+    all_vertices, all_faces = np.concatenate(vertices), np.concatenate(faces).astype(np.int32)
     return Row(all_vertices, all_faces, vertex_normals(all_vertices, all_faces), tuple(defects))
+
+
+def _present(scene: Scene, in_view: int) -> range:
+    if scene.blades_present is not None:
+        return range(scene.blades_present)
+    return range(-SPARE_BLADES, in_view + SPARE_BLADES + 1)
 
 
 def _choose_defects(scene: Scene, in_view: int, rng: np.random.Generator) -> list[Defect]:
     """Spread over the blades, kinds in turn, on the convex side or at the leading edge, which the probe sees."""
-    blades = np.linspace(0, in_view, scene.n_defects + 2)[1:-1].round().astype(int)
+    if scene.blades_present == 0:
+        return []
+    last = in_view if scene.blades_present is None else scene.blades_present - 1
+    blades = np.linspace(0, last, scene.n_defects + 2)[1:-1].round().astype(int)
     found = []
     for number, blade in enumerate(blades.tolist()):
         kind = KINDS[(number + scene.seed) % len(KINDS)]
@@ -167,11 +182,10 @@ def _dented(scene: Scene, points: F64, defect: Defect) -> F64:
     return moved
 
 
-def _hub(scene: Scene, in_view: int) -> tuple[F64, I32]:
-    """The platform between the blades."""
+def _ring(scene: Scene, in_view: int, radius: float) -> tuple[F64, I32]:
+    """The platform between the blades, or the shroud about their tips."""
     first, last = (k * pitch_rad(scene) for k in (-SPARE_BLADES, in_view + SPARE_BLADES))
     angle, axial = np.meshgrid(np.linspace(first, last, 160), np.linspace(-22.0, 22.0, 24), indexing="ij")
-    radius = HUB_MM + 0.2
     points = np.stack([radius * np.cos(angle), radius * np.sin(angle), axial], axis=-1)
     index = np.arange(angle.size).reshape(angle.shape)
     a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]

@@ -13,6 +13,8 @@ import av
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.accuracy.true_coverage import true_coverage
+from bench.accuracy.truth import Truth, load_truth
 from bench.scenes.blades import HEIGHT_MM, HUB_MM, Defect, Row, build_row
 from bench.scenes.detector import Detector, Visible, visible_defects
 from bench.scenes.path import Path as Motion
@@ -45,7 +47,7 @@ def make_scene(scene: Scene, folder: Path, motion: Motion | None = None) -> None
     (work / "truth").mkdir(parents=True)
     row, path = build_row(scene), motion or make_path(scene)
     kept, times = frame_times(scene)
-    seen = _Seen(scene, row)
+    seen = Seen(scene, row)
     entries: dict[str, Any] = {}
     detector = Detector(scene)
     with av.open(str(work / "video.mp4"), "w") as container:
@@ -62,7 +64,7 @@ def make_scene(scene: Scene, folder: Path, motion: Motion | None = None) -> None
         container.mux(stream.encode(None))
     (work / "annotations.json").write_text(json.dumps(entries), encoding="utf-8")
     poses = path.rotor_from_cam()[kept]
-    _write_truth(scene, row, poses, times, seen, work / "truth")
+    write_truth(scene, row, poses, times, seen, work / "truth")
     (work / "scene.json").write_text(json.dumps({"digest": scene.digest(), **asdict(scene)}, indent=1))
     shutil.rmtree(folder, ignore_errors=True)
     work.rename(folder)
@@ -97,7 +99,7 @@ def video_stream(container: Any, fps: float, width: int, height: int) -> Any:
     return stream
 
 
-class _Seen:
+class Seen:
     """What the frames show of the defects: boxes, and the true surface inside them."""
 
     def __init__(self, scene: Scene, row: Row) -> None:
@@ -128,7 +130,17 @@ class _Seen:
         return np.concatenate(parts) if parts else np.zeros((0, 3))
 
 
-def _write_truth(scene: Scene, row: Row, poses: F64, times: list[float], seen: _Seen, folder: Path) -> None:
+def write_truth(scene: Scene, row: Row, poses: F64, times: list[float], seen: Seen, folder: Path) -> None:
+    """Write ``cameras.json``, ``defects.json`` and ``surface.ply``, metres.
+
+    Args:
+        scene: that was filmed.
+        row: its blades.
+        poses: (n, 4, 4) rotor_from_cam of the frames, mm.
+        times: presentation times of the n frames, s.
+        seen: what these frames show.
+        folder: that they are written to.
+    """
     lens = true_lens(scene.lens)
     in_metres = poses.copy()
     in_metres[:, :3, 3] *= MM
@@ -147,14 +159,26 @@ def _write_truth(scene: Scene, row: Row, poses: F64, times: list[float], seen: _
         "hub_radius_m": HUB_MM * MM,
         "blade_height_m": HEIGHT_MM * MM,
         "chord_m": [value * MM for value in scene.chord_mm],
+        "stagger_deg": list(scene.stagger_deg),
         "defects": [_defect(one, seen, scene, row) for one in row.defects],
         "visible": seen.frames,
     }
-    (folder / "defects.json").write_text(json.dumps(defects), encoding="utf-8")
     write_mesh(folder / "surface.ply", Mesh(row.vertices * MM, row.faces), ["unit: metre"])
+    (folder / "defects.json").write_text(json.dumps(defects), encoding="utf-8")
+    covered = {**defects, "coverage": _coverage(load_truth(folder))}
+    (folder / "defects.json").write_text(json.dumps(covered), encoding="utf-8")
 
 
-def _defect(one: Defect, seen: _Seen, scene: Scene, row: Row) -> dict[str, Any]:
+def _coverage(truth: Truth) -> list[dict[str, Any]]:
+    """What all frames of the clip together show of every blade."""
+    shown = {} if truth.row is None else true_coverage(truth, truth.row, range(truth.n_frames))
+    return [
+        {"blade": blade, "share": one.share, **{f"views_{least}": part for least, part in one.by_views.items()}}
+        for blade, one in shown.items()
+    ]
+
+
+def _defect(one: Defect, seen: Seen, scene: Scene, row: Row) -> dict[str, Any]:
     patch = seen.patch(one.number)
     chosen = np.random.default_rng(scene.seed + one.number).permutation(len(patch))[:MAX_PATCH_POINTS]
     return {

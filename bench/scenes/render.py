@@ -73,6 +73,22 @@ class Painter:
         for i in range(self._scene.n_frames):
             yield self._frame(i)
 
+    def sketch(self, i: int) -> tuple[F64, I32]:
+        """What a frame shows, without its colours: (h, w, 3) points and (h, w) defects as in `Frame`."""
+        pose, vertices, faces = self._poses[i], self._row.vertices, self._row.faces
+        towards = self._rays @ pose[:3, :3].T
+        hit, point, _ = _hits(self._blades, vertices, faces, self._row.normals, pose[:3, 3], towards)
+        if self._vanes is not None:
+            still = self._path.world_from_cam[i]
+            vanes, faces, normals, caster = self._vanes
+            towards = self._rays @ still[:3, :3].T
+            before, vane, _ = _hits(caster, vanes, faces, normals, still[:3, 3], towards)
+            far = np.linalg.norm(point - pose[:3, 3], axis=1)
+            hit &= ~(before & (np.linalg.norm(vane - still[:3, 3], axis=1) < far))
+        defect = defects_at(point, hit, self._row.defects, pitch_rad(self._scene))
+        shape = (self._scene.lens.height, self._scene.lens.width)
+        return np.where(hit[:, None], point, np.nan).reshape(*shape, 3), defect.reshape(shape)
+
     def _frame(self, i: int) -> Frame:
         lens, scene = self._scene.lens, self._scene
         pose = self._poses[i]

@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 
 VERSION = 4
 """Of the renderer: another one makes other scenes of the same description."""
+LATER = ("blades_present", "stagger_deg", "shroud")
+"""Fields that came when scenes had been rendered and kept: with their default they change no digest."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,13 @@ class Scene:
     # the row
     blades_in_row: int = 64
     chord_mm: tuple[float, float] = (30.0, 24.0)
+    """At root and tip."""
+    stagger_deg: tuple[float, float] = (28.0, 50.0)
+    """Of the chord against the axis, at root and tip."""
+    blades_present: int | None = None
+    """Only so many blades, from the one seen first; None = the whole row."""
+    shroud: bool = False
+    """The blades' tips are joined by a ring."""
     texture: float = 1.0
     """Strength of the surface's marks; 0 = perfectly even metal."""
     glare: float = 0.35
@@ -91,7 +100,9 @@ class Scene:
 
     def digest(self) -> str:
         """Of the description and the renderer's version."""
-        text = json.dumps([VERSION, asdict(self)], sort_keys=True)
+        usual = {one.name: one.default for one in fields(self)}
+        told = {name: value for name, value in asdict(self).items() if name not in LATER or value != usual[name]}
+        text = json.dumps([VERSION, told], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -66,6 +66,7 @@ def rewrite(
     cameras["times_s"] = times.tolist()
     defects = json.loads((source / "truth/defects.json").read_text())
     defects["visible"] = [defects["visible"][frame] for frame in frames]
+    defects.pop("coverage", None)  # it is that of all frames
     (work / "truth/cameras.json").write_text(json.dumps(cameras), encoding="utf-8")
     (work / "truth/defects.json").write_text(json.dumps(defects), encoding="utf-8")
     shutil.copyfile(source / "truth/surface.ply", work / "truth/surface.ply")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from core.row.overlap import Hypothesis
+from core.row.overlap import Hypothesis, sides
 from core.row.sample import SurfaceSample
 from core.row.turn import Axis
 
@@ -21,8 +21,6 @@ F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-RADIAL_COSINE = 0.8
-"""A normal nearer than this to the radial direction is that of a hub, a casing or a tip."""
 SLOPES = np.linspace(-2.0, 2.0, 9)
 """Trial slopes of the angle, in pitches over the standard deviation of the place; squared 81 pairs."""
 BINS, SMOOTHED = 60, 4
@@ -63,15 +61,9 @@ class Sheet:
         return blade
 
 
-def radial(axis: Axis, points: F64, normals: F64) -> Flags:
-    """(n,) whether a surface faces the axis, or away from it: the hub, a casing, the tips."""
-    flags: Flags = np.abs((axis.radial(points) * normals).sum(axis=1)) > RADIAL_COSINE
-    return flags
-
-
 def fit_sheet(sample: SurfaceSample, row: Hypothesis) -> Sheet:
     """The sheet that most of the blades' points agree on."""
-    on_blade = sample.of(~radial(row.axis, sample.points, sample.normals))
+    on_blade = sides(sample, row.axis)
     angle, radius, height = row.axis.cylinder(on_blade.points)
     middle = (float(np.median(height)), float(np.median(radius)))
     terms = _terms(height - middle[0], radius - middle[1])
@@ -112,7 +104,7 @@ def _emptiest(phase: F64) -> float:
 
 def seen_blades(sheet: Sheet, sample: SurfaceSample) -> I64:
     """(k,) indices of the blades that enough points lie on, ascending."""
-    index = sheet.blade(sample.points[~radial(sheet.axis, sample.points, sample.normals)])
+    index = sheet.blade(sides(sample, sheet.axis).points)
     values, counts = np.unique(index, return_counts=True)
     return np.asarray(values[counts >= max(LEAST_POINTS, LEAST_SHARE * len(index))], np.int64)
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.mapping.surface import Surface
-from core.row.blades import Sheet, fit_sheet, radial, seen_blades
+from core.row.blades import Sheet, fit_sheet, seen_blades
 from core.row.coverage import coverage_of, in_order, sightings
 from core.row.fit import best_contrast, refined
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
-from core.row.overlap import Hypothesis, contrast, overlap
+from core.row.overlap import Hypothesis, contrast, overlap, sides
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.section import section_of
 from core.row.seeds import seeds
@@ -112,10 +112,12 @@ def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, transla
 def refused(fine: SurfaceSample, row: Hypothesis) -> NoRow | None:
     """Why a hypothesis is no row; None for one."""
     value = contrast(fine, row)
+    if value < MIN_CONTRAST:
+        return NoRow(UnknownRow.NO_REPETITION, value)
     one, trough, second, after = overlap(
-        fine, row.axis, [k * row.pitch_rad for k in (1.0, 1.5, 2.0, 2.5)], row.kernel(fine)
+        sides(fine, row.axis), row.axis, [k * row.pitch_rad for k in (1.0, 1.5, 2.0, 2.5)], row.kernel(fine)
     )
-    if value < max(MIN_CONTRAST, MIN_SHARE_KEPT * float(one + second) / 2):
+    if value < MIN_SHARE_KEPT * float(one + second) / 2:
         return NoRow(UnknownRow.NO_REPETITION, value)
     if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)
@@ -134,7 +136,7 @@ def _deviations(sheet: Sheet, sample: SurfaceSample, blades: NDArray[np.int64]) 
 
     Compared are the places that both show, or a blade of which another part is seen would seem to have moved.
     """
-    on_blade = sample.of(~radial(sheet.axis, sample.points, sample.normals))
+    on_blade = sides(sample, sheet.axis)
     position = sheet.position(on_blade.points)
     index = np.round(position).astype(np.int64)
     steps = []
@@ -160,16 +162,16 @@ def _described(
 ) -> BladeRow:
     sheet = fit_sheet(fine, row)
     blades = seen_blades(sheet, fine)
-    on_blade = coarse.of(~radial(row.axis, coarse.points, coarse.normals))
+    on_blade = sides(coarse, row.axis)
     seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
     count = told.count
     first = in_order(seen, index, blades)
     numbers = told_numbers(first, told)
     spread = _deviations(sheet, fine, blades)
     sigma = row.pitch_rad * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
-    _, radius, _ = row.axis.cylinder(fine.points[~radial(row.axis, fine.points, fine.normals)])
+    _, radius, _ = row.axis.cylinder(sides(fine, row.axis).points)
     root, tip = np.percentile(radius, ENDS_PERCENT)
-    shares = overlap(fine, row.axis, [k * row.pitch_rad for k in REPORTED_TURNS], row.kernel(fine))
+    shares = overlap(sides(fine, row.axis), row.axis, [k * row.pitch_rad for k in REPORTED_TURNS], row.kernel(fine))
     fewest = int(np.ceil(2 * np.pi / (row.pitch_rad + 2 * sigma) - 1e-6))
     most = int(np.floor(2 * np.pi / (row.pitch_rad - 2 * sigma) + 1e-6))
     return BladeRow(

@@ -27,6 +27,10 @@ REACH_SPACINGS = 2.0
 """A point has a partner when one lies within so many spacings along the surface."""
 MIN_COSINE = 0.7
 """Of the angle between the normals of partners."""
+RADIAL_COSINE = 0.8
+"""A normal nearer than this to the radial direction is that of a hub, a casing, a shroud or a tip."""
+LEAST_SIDES = 0.05
+"""Of the points: with fewer on sides of blades there is nothing to compare."""
 
 
 @dataclass(frozen=True)
@@ -74,11 +78,32 @@ def overlap(sample: SurfaceSample, axis: Axis, angles_rad: Sequence[float], kern
     return shares
 
 
+def radial(axis: Axis, points: F64, normals: F64) -> NDArray[np.bool_]:
+    """(n,) whether a surface faces the axis, or away from it: the hub, a casing, a shroud, the tips."""
+    flags: NDArray[np.bool_] = np.abs((axis.radial(points) * normals).sum(axis=1)) > RADIAL_COSINE
+    return flags
+
+
+def sides(sample: SurfaceSample, axis: Axis) -> SurfaceSample:
+    """Those of the points that face neither the axis nor away from it.
+
+    A hub lies on itself after every turn, so where much of it is seen it would hide how the blades repeat.
+    """
+    return sample.of(~radial(axis, sample.points, sample.normals))
+
+
 CONTRAST_TURNS = (1.0, 2.0, 0.5, 1.5)
 
 
 def contrast(sample: SurfaceSample, row: Hypothesis) -> float:
-    """(s(p) + s(2p) - s(p/2) - s(3p/2)) / 2 of the overlap s at the pitch p."""
+    """(s(p) + s(2p) - s(p/2) - s(3p/2)) / 2 of the overlap s of the blades' sides at the pitch p; 0 without sides."""
+    blades = sides(sample, row.axis)
+    if len(blades) < LEAST_SIDES * len(sample):
+        return 0.0
+    return _contrast(blades, row)
+
+
+def _contrast(sample: SurfaceSample, row: Hypothesis) -> float:
     one, two, half, half_on = overlap(
         sample, row.axis, [turn * row.pitch_rad for turn in CONTRAST_TURNS], row.kernel(sample)
     )

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from core.json_files import JsonObject
 from core.mapping.surface import Surface
-from core.row.blades import radial
 from core.row.model import BladeRow, EdgeName
+from core.row.overlap import radial
 from core.row.section import FACING, facing, on_sheet
 from core.scene.on_row import RowColumns, Side
 from core.scene.size import Scale

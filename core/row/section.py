@@ -14,7 +14,8 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from core.row.blades import Sheet, radial
+from core.row.blades import Sheet
+from core.row.overlap import sides
 from core.row.sample import SurfaceSample
 from core.scene.on_row import Side
 
@@ -102,7 +103,7 @@ def facing(sheet: Sheet, points: F64, normals: F64) -> F64:
 
 def section_of(sheet: Sheet, sample: SurfaceSample) -> Section:
     """The section of the blades that a sample shows."""
-    on_blade = sample.of(~radial(sheet.axis, sample.points, sample.normals))
+    on_blade = sides(sample, sheet.axis)
     chord, across, rho = on_sheet(sheet, on_blade.points)
     cosine = facing(sheet, on_blade.points, on_blade.normals)
     bends = {way: _bend(chord, across, rho, way * cosine > FACING, way) for way in (1, -1)}

@@ -20,6 +20,8 @@ from core.row.turn import screw_of
 F64 = NDArray[np.float64]
 
 PAIRS = 240
+MOVED = 600
+"""Points of the coarse sample that a motion is fitted with, to all of it."""
 STEPS = 14
 KEPT = 4
 FEW_PITCHES = (1, 2, 3)
@@ -61,11 +63,13 @@ def seeds(sample: SurfaceSample, rotations: F64, translations: F64) -> list[Hypo
 
 def _fitted(sample: SurfaceSample, rotation: F64, translation: F64) -> tuple[F64, F64]:
     """A motion fitted to the surface point to plane (Chen and Medioni 1992), with Cauchy weights that narrow."""
-    middle = sample.points.mean(axis=0)
+    some = slice(None, None, max(1, len(sample) // MOVED))
+    points, facing = sample.points[some], sample.normals[some]
+    middle = points.mean(axis=0)
     widths = np.geomspace(4.0, 0.5, STEPS) * sample.spacing
     for width in widths:
-        moved = transform(sample.points, rotation, translation)
-        found = partners(moved, sample.normals @ rotation.T, sample)
+        moved = transform(points, rotation, translation)
+        found = partners(moved, facing @ rotation.T, sample)
         use = np.flatnonzero(found.fits & (np.abs(found.across) < 6.0 * width))
         if len(use) < 30:
             break

@@ -22,7 +22,7 @@ def blades(count: int, hub: bool = False, skipped: tuple[int, ...] = (), bent: f
             points, faces = scenes._blade(SCENE, blade, [])
             parts.append((turned(points, bent * PITCH_RAD * blade * blade), faces))
     if hub:
-        parts.append(scenes._hub(SCENE, 2))
+        parts.append(scenes._ring(SCENE, 2, scenes.HUB_MM + scenes.RING_MM))
     starts = np.cumsum([0, *(len(points) for points, _ in parts[:-1])])
     vertices = np.concatenate([points for points, _ in parts])
     faces = np.concatenate([faces + start for (_, faces), start in zip(parts, starts, strict=True)])

@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from bench.scenes.blades import surface_point
+from core.row import estimate
 from core.row.blades import fit_sheet, seen_blades
 from core.row.estimate import MIN_CONTRAST, estimate_row, refused, told_numbers
 from core.row.files import read_blades, read_found, write_blades, write_found
 from core.row.map import row_map
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
-from core.row.overlap import Hypothesis
+from core.row.overlap import Hypothesis, contrast
 from core.row.places import normals_at, on_row
 from core.row.sample import sample_surface, thinned
 from core.row.section import _sides
@@ -26,6 +27,7 @@ from core.scene.on_row import Side
 from core.settings.row import RowSettings
 from core.surface.ply import Mesh
 from tests.core.making_blades import PITCH_RAD, SCENE, blade_of, blades, walk
+from tests.core.making_row_surfaces import read_surface
 
 TRUE_AXIS = Axis(np.array([0.0, 0.0, 1.0]), np.zeros(3))
 PITCH_WITHIN = 0.005
@@ -40,6 +42,13 @@ def three() -> BladeRow:
     found = estimate_row(blades(3), walk(VIEWS), seed=0)
     assert isinstance(found, BladeRow)
     return found
+
+
+@pytest.fixture
+def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows are sought on fewer points of a surface: quicker."""
+    monkeypatch.setattr(estimate, "SEARCH_POINTS", 800)
+    monkeypatch.setattr(estimate, "FIT_POINTS", 3000)
 
 
 def test_axis_and_pitch_of_three_blades(three: BladeRow) -> None:
@@ -185,20 +194,42 @@ def test_every_point_gets_its_blade(count: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("mesh", "reasons"),
+    ("name", "reasons"),
     [
-        (blades(2), {UnknownRow.TOO_FEW_BLADES, UnknownRow.NO_REPETITION}),
-        (blades(1), {UnknownRow.NO_REPETITION}),
-        (blades(0, hub=True), {UnknownRow.NO_REPETITION}),
-        (Mesh(np.zeros((0, 3))), {UnknownRow.NO_SURFACE}),
+        ("two-blades", {UnknownRow.TOO_FEW_BLADES, UnknownRow.NO_REPETITION}),
+        ("one-blade", {UnknownRow.NO_REPETITION}),
+        ("hub", {UnknownRow.NO_REPETITION}),
     ],
-    ids=["two blades", "one blade", "hub", "nothing"],
 )
-def test_anything_else_is_unknown(mesh: Mesh, reasons: set[UnknownRow]) -> None:
-    found = estimate_row(mesh, walk(FEW_VIEWS), seed=0)
+def test_what_cameras_saw_of_anything_else_is_unknown(name: str, reasons: set[UnknownRow], few_points: None) -> None:
+    found = estimate_row(*read_surface(name), seed=0)
     assert isinstance(found, NoRow)
     assert found.reason in reasons
     assert found.to_dict()["status"] == "unknown"
+
+
+def test_what_cameras_saw_of_three_blades_and_the_hub_between_is_a_row(few_points: None) -> None:
+    mesh, views = read_surface("three-blades")
+    found = estimate_row(mesh, views, seed=0)
+    assert isinstance(found, BladeRow)
+    assert found.pitch_rad == pytest.approx(PITCH_RAD, rel=0.02)
+    assert sorted(found.numbers.values()) == [1, 2, 3]
+
+
+def test_without_a_surface_no_row_is_known() -> None:
+    found = estimate_row(Mesh(np.zeros((0, 3))), walk(FEW_VIEWS), seed=0)
+    assert isinstance(found, NoRow)
+    assert found.reason == UnknownRow.NO_SURFACE
+
+
+def test_a_hub_does_not_hide_how_blades_repeat() -> None:
+    points = thinned(sample_surface(blades(3, hub=True), 0), 4000)
+    row = Hypothesis(TRUE_AXIS, PITCH_RAD)
+    assert refused(points, row) is None
+    alone = thinned(sample_surface(blades(3), 0), 4000)
+    assert contrast(points, row) == pytest.approx(contrast(alone, row), abs=0.05)
+    hub = thinned(sample_surface(blades(0, hub=True), 0), 1000)
+    assert contrast(hub, row) == 0.0
 
 
 def test_two_views_tell_no_row() -> None:

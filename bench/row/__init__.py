@@ -1,0 +1,1 @@
+"""The row of blades over scenes of every kind: found where it can be, unknown where it cannot."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -29,9 +28,8 @@ from tests.api.conftest import ANNOTATIONS, VIDEO, Backend, Server, free_port, w
 from tests.databases import put_new_tables
 from tests.store.small_plan import GRAPH
 from tests.web.making_page import FAR_FINDING, HOSTILE, NEAR_FINDING, write_result
-from tests.web.test_page import NO_GPU
 
-sync_api = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
 
 READY_MS = 40_000
@@ -90,15 +88,6 @@ def deployed(tmp_path: Path, files: dict[str, bytes]) -> Iterator[Deployed]:
     server.should_exit = True
     thread.join(10)
     db.close()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as playwright:
-        path = shutil.which("chromium-headless-shell")
-        started = playwright.chromium.launch(executable_path=path, args=[*NO_GPU, "--no-sandbox"])
-        yield started
-        started.close()
 
 
 @dataclass

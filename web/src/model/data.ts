@@ -139,7 +139,7 @@ export interface Row {
 export interface ViewerData {
   readonly schema_version: number;
   readonly title: string;
-  readonly model: { readonly index: number; readonly count: number; readonly unit: string; readonly scale: number | null };
+  readonly model: { readonly index: number; readonly count: number; readonly unit: string; readonly scale: number | null; readonly findings?: readonly [number, number] | null };
   readonly models: readonly { readonly index: number; readonly href: string }[];
   readonly videos: readonly Video[];
   readonly camera: CameraData | null;
@@ -166,6 +166,8 @@ export interface Delivered {
   readonly viewer: ViewerData;
   /** Base64 of surface.glb. */
   surface: string | null;
+  /** Nothing that is done to the page is kept; in the scenes of a study. */
+  readonly forgets?: boolean;
 }
 
 /** The only version of `viewer.json` that this page reads. */

@@ -39,12 +39,12 @@ def result_with_blades(folder: Path, name: str = "one_model", told: Sequence[dic
                 one.update(length_sigma=0.1, length_unit="model", size=own["length"], width=None, width_sigma=None)
         if isinstance(value, dict):
             value["row"] = row
-            _write_script(folder / "viewer" / "data.js", value)
+            write_script(folder / "viewer" / "data.js", value)
         write_json(path, value)
     return folder
 
 
-def _write_script(path: Path, document: dict[str, Any]) -> None:
+def write_script(path: Path, document: dict[str, Any]) -> None:
     """The script of the page with another document and the same surface."""
     surface = path.read_text(encoding="ascii").rsplit(", surface: ", 1)[1]
     path.write_text(f"window.BLADEATLAS = {{viewer: {json.dumps(document)}, surface: {surface}", encoding="ascii")

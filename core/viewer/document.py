@@ -181,13 +181,10 @@ def _frame(row: Item, source: ViewerSource) -> JsonObject:
         "name": image_name(index),
         "registered": pose is not None,
         "reason": reason,
-        "reason_text": None if reason is None else FRAME_REASONS[reason],
         "cam_from_world": pose,
         "picture": None if scale is None else f"{below}{FRAMES}/{image_name(index)}",
         "picture_scale": scale,
         "tile": None if pictures is None else pictures.tiles.get(index),
-        "damaged": pictures is not None and index in pictures.damaged,
-        "model": row.get("model"),
     }
 
 
@@ -219,7 +216,6 @@ def _detection(row: Item, source: ViewerSource, size: tuple[float, float]) -> Js
         "state": row["outcome"],
         "method": row["rung"],
         "point": point,
-        "normal": None,
         "sigma": (source.sigmas or {}).get(row["id"]) if point is not None else None,
         "defect": row["defect_id"],
         "video": row.get("video") or 0,

@@ -203,6 +203,52 @@ def test_axe_finds_nothing(view: Open, scheme: str) -> None:
         assert faults(opened.page) == [], (state, scheme)
 
 
+DIALOGS = "rslntgyw"
+"""Keys of the actions that ask for a word, or for a place on the frame."""
+
+
+def test_axe_finds_nothing_in_what_asks_for_a_word(view: Open) -> None:
+    page = view(f"#d={NEAR_FINDING}&f=1").page
+    for key in DIALOGS:
+        page.keyboard.press(key)
+        page.locator(".pending" if key == "w" else ".ask").first.wait_for()
+        assert faults(page) == [], key
+        page.keyboard.press("Escape")
+        page.locator(".pending, .ask").wait_for(state="detached")
+    page.keyboard.press("d")
+    page.keyboard.press("Enter")
+    page.locator(".ask").wait_for()
+    assert faults(page) == []
+
+
+def test_a_finding_is_drawn_with_the_mouse(view: Open) -> None:
+    opened = view("#f=1")
+    page = opened.page
+    box = page.locator(".drawn rect.box").first.bounding_box()  # of a detection of the near finding
+    page.get_by_role("button", name="Add a finding").click()
+    page.mouse.move(box["x"], box["y"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 3)
+    drawn = page.locator(".drawn rect.pending").bounding_box()
+    assert (drawn["width"], drawn["height"]) == pytest.approx((box["width"] / 2, box["height"] / 3), abs=3)
+    page.mouse.move(box["x"] + box["width"], box["y"] + box["height"])
+    page.mouse.up()
+    page.locator(".ask input").fill("crack")
+    page.get_by_role("button", name="Keep").click()
+    page.locator(".rows [aria-current=true] b", has_text="H1").wait_for()
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save review.json").click()
+    (record,) = json.loads(Path(saved.value.path()).read_text(encoding="utf-8"))["records"]
+    document = json.loads((Path(page.url.removeprefix("file://").split("#")[0]).parent / "viewer.json").read_text())
+    own = next(one for one in document["detections"] if one["frame"] == 1)
+    size = (CROP.source_width, CROP.source_height) * 2
+    assert (record["action"], record["value"]["frame"], record["value"]["label"]) == ("add", 1, "crack")
+    assert record["value"]["box"] == pytest.approx(np.divide(own["box"], size).tolist(), abs=0.01)
+    assert record["value"]["point"] == pytest.approx(NEAR_PLACE, abs=0.05)
+    assert opened.place()["n"] is None, "the click that ends a drawing asks nothing"
+    assert opened.complaints == []
+
+
 def test_a_hostile_label_is_shown_and_does_not_run(view: Open) -> None:
     opened = view(f"#d={FAR_FINDING}&f=5")
     opened.settle()

@@ -12,7 +12,6 @@ export interface Frame {
   readonly name: string;
   readonly registered: boolean;
   readonly reason: string | null;
-  readonly reason_text?: string | null;
   /** Row-major 3x4, COLMAP's. */
   readonly cam_from_world: readonly number[] | null;
   readonly picture: string | null;

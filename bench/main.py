@@ -16,6 +16,7 @@ from bench.scenes import command as scenes
 from bench.scenes import variants_command as variants
 from bench.service import simulate
 from bench.soak import command as soak
+from bench.study import command as study
 from bench.usability import command as usability
 from core.errors import BadInput, BladeAtlasError
 
@@ -80,6 +81,9 @@ def make_parser() -> argparse.ArgumentParser:
     usability_parser = commands.add_parser("usability", help="ask gallery, page and report what an inspector asks")
     usability.add_arguments(usability_parser)
     usability_parser.set_defaults(run=usability.command)
+    study_parser = commands.add_parser("study", help="evaluate what people did in a study of `bladeatlas study`")
+    study.add_arguments(study_parser)
+    study_parser.set_defaults(run=study.command)
     return parser
 
 

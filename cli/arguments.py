@@ -179,6 +179,7 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="video of a result that keeps no pictures, of several each in their order: builds the page again",
     )
     _report(commands)
+    _study(commands)
     for one in (point, views):
         one.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
         one.add_argument("--model", type=int, metavar="N", help="of several models (0, or the defect's)")
@@ -198,6 +199,16 @@ def _report(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     report.add_argument("--reviewer", metavar="NAME", help="who signs (the person of the review, where it is one)")
     report.add_argument("--date", metavar="YYYY-MM-DD", help="day of the report (that of the last word of the review)")
     _json(report, "print the paths as JSON")
+
+
+def _study(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    study = _add(commands, "study", "write a study that asks people about two results, with the gallery and the page")
+    study.add_argument("first", type=Path, metavar="RESULT_A", help="output folder of `bladeatlas run`: scene A")
+    study.add_argument("second", type=Path, metavar="RESULT_B", help="another one: scene B")
+    study.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the study, made when missing")
+    study.add_argument("--practice", type=Path, metavar="RESULT", help="a third one to look around in before the clock")
+    study.add_argument("--contact", default="", metavar="TEXT", help="who answers questions, shown with the consent")
+    _json(study, "print the paths as JSON")
 
 
 def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the inspector's page from web/ into core/viewer/bundle, or into the folder that is named.
+# Builds the inspector's page and that of the study from web/ into core/viewer/bundle, or into the folder that is named.
 #
 #   scripts/web.sh          types, tests, then the committed bundle
 #   scripts/web.sh FOLDER   only the bundle, into FOLDER
@@ -36,6 +36,7 @@ if [ "$(cat node_modules/.lock-stamp 2> /dev/null)" != "$stamp" ]; then
 fi
 if [ -n "$out" ]; then
   npx vite build --outDir "$out" --emptyOutDir --logLevel warn
+  npx vite build --config vite.study.config.ts --outDir "$out/study" --emptyOutDir --logLevel warn
 else
   npm run --silent check
   npm test --silent

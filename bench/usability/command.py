@@ -13,13 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from bench.usability.instruments import Gallery, Instrument, ReportPage, Viewer
-from bench.usability.truth import UNKNOWN, Task, answers, boxed_frame
 from core.errors import BadInput
 from core.inspection_report.document import report_document
 from core.inspection_report.forms import Form, written
 from core.inspection_report.source import files_below, read_source
 from core.outputs import FRAMES, VIEWER_PAGE
 from core.report.csv_form import read_csv
+from core.study.truth import UNKNOWN, Task, answers, boxed_frame
 
 BROWSER = "chromium-headless-shell"
 _FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")

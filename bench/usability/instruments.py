@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from bench.usability.klm import Hand
-from bench.usability.truth import MIDDLE, Task
+from core.study.truth import MIDDLE, Task
 
 Answer = str | None
 _SETTLE_MS = 400

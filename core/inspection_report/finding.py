@@ -43,6 +43,7 @@ def _finding(record: JsonObject, source: ReportSource, review: Review | None) ->
         "size": _size(record),
         "width": _measure(record, "width"),
         "area": _measure(record, "area"),
+        "depth": _measure(record, "depth"),
         "confidence": confidence.get("value"),
         "seen": {"frames": seen.get("k"), "could_show": seen.get("n")},
         "times": _times(visits),

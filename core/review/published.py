@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from filelock import FileLock, Timeout
+
 from core.errors import BadInput
 from core.json_files import JsonObject, read_json, replace_file, write_json
 from core.outputs import DEFECTS
@@ -18,10 +20,14 @@ from core.review.words import Action
 
 REVIEW = "review.json"
 """In the result folder: the records, in the form that the page and the service hand over."""
+LOCK = ".review.lock"
+"""Beside it: held while records are added, so that two who add at once lose nothing."""
 SCHEMA_VERSION = 2
 MAX_RECORDS = 100_000
 """Records that one result may have."""
 _MAX_BYTES = 64 << 20
+_PATIENCE_S = 30.0
+"""How long another who adds records is waited for; adding takes well under a second."""
 _MEMBERS = (
     *("schema_version", "title", "fingerprint", "model", "records"),
     *("inspection", "revision", "severities", "may_review", "you"),
@@ -119,8 +125,23 @@ def apply_records(folder: Path, records: Sequence[ReviewRecord]) -> Applied:
     """Add records to the review of a result; those that it has already are left, whoever hands them over again.
 
     Raises:
-        BadInput: the folder cannot be written, or would have too many records.
+        BadInput: the folder cannot be written, another holds it too long, or it would have too many records.
     """
+    lock = FileLock(
+        folder / LOCK, timeout=_PATIENCE_S, fallback_to_soft=False
+    )  # the kernel's: who is killed holds none
+    try:
+        held = lock.acquire()
+    except Timeout:
+        raise BadInput(f"another adds records to '{folder}'", code="folder_in_use", where=REVIEW) from None
+    except OSError as error:
+        raise _cannot_write(error) from None
+    with held:
+        return _added(folder, records)
+
+
+def _added(folder: Path, records: Sequence[ReviewRecord]) -> Applied:
+    """Add them; the lock is held."""
     kept = kept_records(folder)
     together = merged(kept, records)
     if len(together) > MAX_RECORDS:
@@ -129,8 +150,12 @@ def apply_records(folder: Path, records: Sequence[ReviewRecord]) -> Applied:
         try:
             replace_file(folder / REVIEW, lambda beside: write_json(beside, review_document(together)))
         except OSError as error:
-            raise BadInput(f"{REVIEW} cannot be written: {error.strerror}", where=REVIEW) from None
+            raise _cannot_write(error) from None
     return Applied(len(together) - len(kept), len({one.id for one in records}) - (len(together) - len(kept)))
+
+
+def _cannot_write(error: OSError) -> BadInput:
+    return BadInput(f"{REVIEW} cannot be written: {error.strerror}", where=REVIEW)
 
 
 def review_document(records: Sequence[ReviewRecord]) -> JsonObject:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from core.outputs import DOCUMENT
@@ -12,12 +13,22 @@ from core.viewer.document import ViewerSource, viewer_document
 
 DATA = "data.js"
 _BUNDLE = "bundle"
+_STUDY = "study"
 
 
 def bundle() -> dict[str, bytes]:
     """The built page: bytes by file name, sorted."""
-    files = (resources.files("core.viewer") / _BUNDLE).iterdir()
-    return {file.name: file.read_bytes() for file in sorted(files, key=lambda file: file.name) if file.is_file()}
+    return _files(resources.files("core.viewer") / _BUNDLE)
+
+
+def study_bundle() -> dict[str, bytes]:
+    """The built page of the study that asks people: bytes by file name, sorted."""
+    return _files(resources.files("core.viewer") / _BUNDLE / _STUDY)
+
+
+def _files(folder: Traversable) -> dict[str, bytes]:
+    files = sorted(folder.iterdir(), key=lambda file: file.name)
+    return {file.name: file.read_bytes() for file in files if file.is_file()}
 
 
 def write_page(folder: Path, source: ViewerSource, surface: Path | None) -> list[str]:

@@ -10,12 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.advice import FLAG_ADVICE
 from core.flags import Verdict
 from core.json_files import JsonObject
 from core.outputs import PORTRAITS, SPRITE, SURFACE_GLB, VIEWER, VIEWER_PAGE, path_of_model, portrait_name
 from core.report.build import Report
 from core.report.record import Item
-from core.scene.defect import MODEL_UNIT, DefectRecord
+from core.scene.defect import MODEL_UNIT, DefectRecord, least_defects
 from core.scene.detection import REASONS, Outcome
 from core.scene.frame import image_name
 from core.viewer.scene import FRAMES, Pictures, ViewerScene, best_frames
@@ -95,6 +96,7 @@ def viewer_document(source: ViewerSource) -> JsonObject:
             "count": len(source.models),
             "unit": scale.get("unit") or MODEL_UNIT,
             "scale": scale.get("value"),
+            "findings": _in_all(report),
         },
         "models": [
             {"index": other, "href": page_of(other, source.model)} for other in source.models if other != source.model
@@ -117,6 +119,12 @@ def viewer_document(source: ViewerSource) -> JsonObject:
         "pictures_reason": source.no_pictures if source.pictures is None else None,
         "up": None if scene is None else scene.up,
     }
+
+
+def _in_all(report: Report) -> list[int] | None:
+    """At least and at most how many findings all models hold; None where one model holds all that there are."""
+    least = least_defects(int(record.get("model") or 0) for record in report.defects)
+    return None if least == len(report.defects) else [least, len(report.defects)]
 
 
 def _frame_words() -> dict[str, str]:
@@ -173,13 +181,10 @@ def _frame(row: Item, source: ViewerSource) -> JsonObject:
         "name": image_name(index),
         "registered": pose is not None,
         "reason": reason,
-        "reason_text": None if reason is None else FRAME_REASONS[reason],
         "cam_from_world": pose,
         "picture": None if scale is None else f"{below}{FRAMES}/{image_name(index)}",
         "picture_scale": scale,
         "tile": None if pictures is None else pictures.tiles.get(index),
-        "damaged": pictures is not None and index in pictures.damaged,
-        "model": row.get("model"),
     }
 
 
@@ -211,7 +216,6 @@ def _detection(row: Item, source: ViewerSource, size: tuple[float, float]) -> Js
         "state": row["outcome"],
         "method": row["rung"],
         "point": point,
-        "normal": None,
         "sigma": (source.sigmas or {}).get(row["id"]) if point is not None else None,
         "defect": row["defect_id"],
         "video": row.get("video") or 0,
@@ -253,7 +257,7 @@ def _flag(flag: Item) -> JsonObject:
         "code": flag["code"],
         "severity": flag["severity"],
         "text": flag.get("meaning") or flag["code"],
-        "advice": None,
+        "advice": FLAG_ADVICE.get(flag["code"]),
         "where": flag.get("where") or "",
         "value": flag.get("value"),
         "threshold": flag.get("threshold"),

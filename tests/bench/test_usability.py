@@ -2,53 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from bench.usability.command import BROWSER, Outcome, measure, table
 from bench.usability.instruments import found, least_seen
 from bench.usability.klm import Hand
-from bench.usability.truth import UNKNOWN, Task, answers
 from core.errors import BadInput
-from core.json_files import read_json, write_json
-from tests.core.inspection_report.making_reports import ROW
+from core.study.truth import UNKNOWN, Task, answers
 from tests.core.making_results import opened
+from tests.core.study.making_scenes import result_with_blades
 
 LONGEST_S = {Task.COUNT: 3.0}
 """Of model time; every other question has five seconds."""
-
-
-def result_with_blades(folder: Path) -> Path:
-    """The committed result of two models whose findings lie on blades 2, 2 and 1, one of them the largest."""
-    opened("two_models", folder)
-    told = [
-        {"blade": "2", "span": 0.25, "span_sigma": 0.02, "chord": None, "side": "convex"},
-        {"blade": "2", "span": 0.75, "span_sigma": 0.02, "chord": None, "side": "convex", "length": 2.5},
-        {"blade": "1", "span": 0.5, "span_sigma": 0.02, "chord": None, "side": "convex"},
-    ]
-    row = {**ROW, "findings": []}
-    write_json(folder / "row.json", row)
-    for path in (folder / "mapping" / "defects.json", folder / "viewer" / "viewer.json"):
-        value = read_json(path)
-        records = value["defects"] if isinstance(value, dict) else value
-        for one, own in zip(records, told, strict=False):
-            one.update(own)
-            if "length" in own:
-                one.update(length_sigma=0.1, length_unit="model", size=own["length"], width=None, width_sigma=None)
-        if isinstance(value, dict):
-            value["row"] = row
-            _write_script(folder / "viewer" / "data.js", value)
-        write_json(path, value)
-    return folder
-
-
-def _write_script(path: Path, document: dict[str, Any]) -> None:
-    """The script of the page with another document and the same surface."""
-    surface = path.read_text(encoding="ascii").rsplit(", surface: ", 1)[1]
-    path.write_text(f"window.BLADEATLAS = {{viewer: {json.dumps(document)}, surface: {surface}", encoding="ascii")
 
 
 def test_times_are_those_of_the_model() -> None:
@@ -63,7 +30,7 @@ def test_times_are_those_of_the_model() -> None:
 
 
 def test_right_answers_come_from_the_tables(tmp_path: Path) -> None:
-    right = answers(result_with_blades(tmp_path / "result"))
+    right = answers(result_with_blades(tmp_path / "result", "two_models"))
     assert {task: sorted(right[task]) for task in Task} == {
         Task.COUNT: ["3"],
         Task.LARGEST: ["D1"],
@@ -110,7 +77,7 @@ def test_answers_are_read_off_what_is_shown() -> None:
 @pytest.mark.tool(BROWSER)
 def test_the_page_answers_every_question_rightly_and_in_time(tmp_path: Path) -> None:
     pytest.importorskip("playwright")
-    outcomes = measure(result_with_blades(tmp_path / "result"))
+    outcomes = measure(result_with_blades(tmp_path / "result", "two_models"))
     own = {one.task: one for one in outcomes if one.instrument == "viewer"}
     assert {task: one.answer for task, one in own.items() if not one.right} == {}
     for task, one in own.items():

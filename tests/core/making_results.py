@@ -2,7 +2,8 @@
 
     python -m tests.core.making_results     writes tests/data/results anew
 
-`two_models` has two models of one plane, each with defects; `refused` is a run whose search found no model.
+`one_model` has one model of a plane with its defects, and the gallery; `two_models` has two models of it, each with
+defects; `refused` is a run whose search found no model.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from core.report.record import RunRecord, TaskRecord
 from core.scene.detection import Outcome
 from core.settings import make_settings
 from core.stage import Facts, StageTask
-from core.stages import map_defects, pictures, timeline, viewer
+from core.stages import gallery, map_defects, pictures, timeline, viewer
 from core.states import RunState, TaskState
 from core.surface.ply import write_mesh
 from core.task_key import key_of
@@ -42,7 +43,7 @@ def make(name: str, out: Path) -> None:
     """Make one of the results in a new folder."""
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
-        {"two_models": _two_models, "refused": _refused}[name](work, out)
+        {"one_model": _one_model, "two_models": _two_models, "refused": _refused}[name](work, out)
     shutil.rmtree(out / ".bladeatlas")
     for page in out.rglob("viewer"):
         for file in bundle():
@@ -58,21 +59,34 @@ def opened(name: str, out: Path) -> Path:
     return out
 
 
+def _one_model(work: Path, out: Path) -> None:
+    folders, facts = _begun(work)
+    _model(0, work, folders, facts)
+    _run(gallery, 0, work, folders, facts)
+    _publish(_record(facts, folders), folders, out)
+
+
 def _two_models(work: Path, out: Path) -> None:
     folders, facts = _begun(work)
-    for submodel, registered in REGISTERED.items():
-        extend, mesh = work / key_of("extend", submodel), work / key_of("mesh", submodel)
-        sparse_model(extend / "model", registered)
-        write(extend / "registered.json", registered)
-        mesh.mkdir()
-        write_mesh(mesh / "mesh_poisson.ply", plane(41, 35))
-        folders |= {extend.name: extend, mesh.name: mesh}
-        facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
-        for stage in (map_defects, timeline):
-            _run(stage, submodel, work, folders, facts)
-        _number(folders[key_of("timeline", submodel)], submodel)
-        _run(viewer, submodel, work, folders, facts)
+    for submodel in REGISTERED:
+        _model(submodel, work, folders, facts)
     _publish(_record(facts, folders), folders, out)
+
+
+def _model(submodel: int, work: Path, folders: dict[str, Path], facts: dict[str, Facts]) -> None:
+    """A model of the plane, and the stages from mapping to its page."""
+    registered = REGISTERED[submodel]
+    extend, mesh = work / key_of("extend", submodel), work / key_of("mesh", submodel)
+    sparse_model(extend / "model", registered)
+    write(extend / "registered.json", registered)
+    mesh.mkdir()
+    write_mesh(mesh / "mesh_poisson.ply", plane(41, 35))
+    folders |= {extend.name: extend, mesh.name: mesh}
+    facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
+    for stage in (map_defects, timeline):
+        _run(stage, submodel, work, folders, facts)
+    _number(folders[key_of("timeline", submodel)], submodel)
+    _run(viewer, submodel, work, folders, facts)
 
 
 def _number(folder: Path, submodel: int) -> None:
@@ -115,7 +129,7 @@ def _run(stage: ModuleType, submodel: int, work: Path, folders: dict[str, Path],
     key = key_of(stage.__name__.rsplit(".", 1)[-1], submodel)
     out = work / key
     out.mkdir()
-    args = {"piece": submodel} if submodel else {}
+    args = {"submodel": submodel} if submodel else {}
     task = StageTask(key, args, SETTINGS, dict(folders), dict(facts), (Recording(work / "video.mp4"),), out)
     facts[key] = stage.run(task).facts
     folders[key] = out
@@ -134,6 +148,6 @@ def _publish(record: RunRecord, folders: Mapping[str, Path], out: Path) -> None:
 
 
 if __name__ == "__main__":
-    for _name in ("two_models", "refused"):
+    for _name in ("one_model", "two_models", "refused"):
         shutil.rmtree(RESULTS / _name, ignore_errors=True)
         make(_name, RESULTS / _name)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from core.viewer.deliver import bundle
+from core.viewer.deliver import bundle, study_bundle
 
 ROOT = Path(__file__).parents[2]
 UNREACHED = (
@@ -29,4 +29,5 @@ def test_the_page_is_what_its_sources_build(tmp_path: Path) -> None:
     if done.returncode and any(code in done.stderr for code in UNREACHED):
         pytest.skip("no registry of packages can be reached")
     assert done.returncode == 0, done.stderr
-    assert {path.name: path.read_bytes() for path in built.iterdir()} == bundle()
+    assert {path.name: path.read_bytes() for path in built.iterdir() if path.is_file()} == bundle()
+    assert {path.name: path.read_bytes() for path in (built / "study").iterdir()} == study_bundle()

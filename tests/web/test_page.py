@@ -4,13 +4,8 @@ from __future__ import annotations
 
 import gzip
 import json
-import shutil
-import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
-from importlib import resources
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -19,47 +14,14 @@ import numpy as np
 import pytest
 
 from core.query import Result
+from core.viewer.deliver import bundle, study_bundle
 from core.viewer.policy import POLICY
 from tests.core.making_plates import CROP
 from tests.web.making_page import FAR_FINDING, FRAMES, HOSTILE, NEAR_FINDING, NEAR_PLACE, write_refused, write_result
+from tests.web.opening import READY_S, Open, Opened, faults
 
-sync_api = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
-
-READY_S = 10.0
-NO_GPU = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-
-
-@dataclass
-class Opened:
-    """A page, and what went wrong in it."""
-
-    page: Any
-    ready_s: float = 0.0
-    complaints: list[str] = field(default_factory=list)
-    requests: list[str] = field(default_factory=list)
-
-    def place(self) -> dict[str, Any]:
-        """The state that the page is in."""
-        state: dict[str, Any] = self.page.evaluate("window.bladeatlas.place()")
-        return state
-
-    def settle(self) -> None:
-        """Wait until the 3D view rests and its labels are placed."""
-        self.page.wait_for_timeout(350)
-
-
-Open = Callable[..., Opened]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as playwright:
-        started = playwright.chromium.launch(
-            executable_path=shutil.which("chromium-headless-shell"), args=[*NO_GPU, "--no-sandbox"]
-        )
-        yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")
@@ -70,27 +32,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def view(browser: Any, folder: Path) -> Iterator[Open]:
-    contexts: list[Any] = []
+def view(open_page: Open, folder: Path) -> Open:
+    """Opens the page of the small result, or another one."""
 
-    def open_page(fragment: str = "", page: Path | str | None = None, **options: Any) -> Opened:
-        size = options.pop("size", (1200, 760))
-        context = browser.new_context(viewport={"width": size[0], "height": size[1]}, **options)
-        contexts.append(context)
-        opened = Opened(context.new_page())
-        opened.page.on("console", lambda message: opened.complaints.append(message.text))
-        opened.page.on("pageerror", lambda error: opened.complaints.append(str(error)))
-        opened.page.on("request", lambda request: opened.requests.append(request.url))
-        started = time.monotonic()
-        address = page or folder / "viewer" / "index.html"
-        opened.page.goto((address if isinstance(address, str) else address.as_uri()) + fragment)
-        opened.page.locator("main").wait_for(timeout=READY_S * 1000)
-        opened.ready_s = time.monotonic() - started
-        return opened
+    def start(fragment: str = "", page: Path | str | None = None, **options: Any) -> Opened:
+        return open_page(page or folder / "viewer" / "index.html", fragment, **options)
 
-    yield open_page
-    for context in contexts:
-        context.close()
+    return start
 
 
 def test_it_opens_from_a_folder_and_asks_nobody(view: Open) -> None:
@@ -247,16 +195,58 @@ STATES: dict[str, tuple[str, tuple[str, ...]]] = {
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing(view: Open, scheme: str) -> None:
-    axe = (resources.files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
     for state, (fragment, keys) in STATES.items():
         opened = view(fragment, color_scheme=scheme)
         for key in keys:
             opened.page.keyboard.press(key)
         opened.settle()
-        opened.page.evaluate(axe)
-        found = opened.page.evaluate("axe.run().then(({ violations }) => violations)")
-        said = [(one["id"], one["nodes"][0]["html"][:160], one["nodes"][0]["failureSummary"][:200]) for one in found]
-        assert said == [], (state, scheme)
+        assert faults(opened.page) == [], (state, scheme)
+
+
+DIALOGS = "rslntgyw"
+"""Keys of the actions that ask for a word, or for a place on the frame."""
+
+
+def test_axe_finds_nothing_in_what_asks_for_a_word(view: Open) -> None:
+    page = view(f"#d={NEAR_FINDING}&f=1").page
+    for key in DIALOGS:
+        page.keyboard.press(key)
+        page.locator(".pending" if key == "w" else ".ask").first.wait_for()
+        assert faults(page) == [], key
+        page.keyboard.press("Escape")
+        page.locator(".pending, .ask").wait_for(state="detached")
+    page.keyboard.press("d")
+    page.keyboard.press("Enter")
+    page.locator(".ask").wait_for()
+    assert faults(page) == []
+
+
+def test_a_finding_is_drawn_with_the_mouse(view: Open) -> None:
+    opened = view("#f=1")
+    page = opened.page
+    box = page.locator(".drawn rect.box").first.bounding_box()  # of a detection of the near finding
+    page.get_by_role("button", name="Add a finding").click()
+    page.mouse.move(box["x"], box["y"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 3)
+    drawn = page.locator(".drawn rect.pending").bounding_box()
+    assert (drawn["width"], drawn["height"]) == pytest.approx((box["width"] / 2, box["height"] / 3), abs=3)
+    page.mouse.move(box["x"] + box["width"], box["y"] + box["height"])
+    page.mouse.up()
+    page.locator(".ask input").fill("crack")
+    page.get_by_role("button", name="Keep").click()
+    page.locator(".rows [aria-current=true] b", has_text="H1").wait_for()
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save review.json").click()
+    (record,) = json.loads(Path(saved.value.path()).read_text(encoding="utf-8"))["records"]
+    document = json.loads((Path(page.url.removeprefix("file://").split("#")[0]).parent / "viewer.json").read_text())
+    own = next(one for one in document["detections"] if one["frame"] == 1)
+    size = (CROP.source_width, CROP.source_height) * 2
+    assert (record["action"], record["value"]["frame"], record["value"]["label"]) == ("add", 1, "crack")
+    assert record["value"]["box"] == pytest.approx(np.divide(own["box"], size).tolist(), abs=0.01)
+    assert record["value"]["point"] == pytest.approx(NEAR_PLACE, abs=0.05)
+    assert opened.place()["n"] is None, "the click that ends a drawing asks nothing"
+    assert opened.complaints == []
 
 
 def test_a_hostile_label_is_shown_and_does_not_run(view: Open) -> None:
@@ -358,6 +348,5 @@ def test_a_narrow_window_shows_all_faces(view: Open) -> None:
 
 
 def test_the_bundle_is_small() -> None:
-    bundle = resources.files("core.viewer") / "bundle"
-    assert {file.name for file in bundle.iterdir()} == {"app.js", "index.html", "style.css"}
-    assert sum(len(gzip.compress(file.read_bytes(), 9)) for file in bundle.iterdir()) <= 260_000
+    assert set(bundle()) == set(study_bundle()) == {"app.js", "index.html", "style.css"}
+    assert sum(len(gzip.compress(content, 9)) for content in bundle().values()) <= 260_000

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -26,12 +25,14 @@ from store.reviews import Reviews
 from store.settings import DeploymentSettings
 from store.tables import defect_rows
 from tests.api.conftest import ANNOTATIONS, VIDEO, Backend, Server, free_port, wait_until
+from tests.core.inspection_report.making_reports import text_of
+from tests.core.making_results import opened as committed
 from tests.databases import put_new_tables
 from tests.store.small_plan import GRAPH
 from tests.web.making_page import FAR_FINDING, HOSTILE, NEAR_FINDING, write_result
-from tests.web.test_page import NO_GPU
+from tests.web.opening import faults
 
-sync_api = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
 
 READY_MS = 40_000
@@ -54,11 +55,12 @@ class Deployed:
     address: str
     files: dict[str, bytes]
 
-    def finish(self, inspection_id: str) -> None:
-        """Do the work of an inspection, and publish the small result as its own."""
+    def finish(self, inspection_id: str, files: dict[str, bytes] | None = None) -> None:
+        """Do the work of an inspection, and publish a result as its own, the small one unless another is given."""
         self.backend.work(inspection_id)
-        records = json.loads(self.files["viewer/viewer.json"])["defects"]
-        self.backend.publish(inspection_id, self.files, defects=defect_rows(records))
+        shown = files or self.files
+        records = json.loads(shown["viewer/viewer.json"])["defects"]
+        self.backend.publish(inspection_id, shown, defects=defect_rows(records))
         with self.backend.db.write() as session:
             for artifact in session.scalars(select(Artifact).where(Artifact.inspection_id == inspection_id)):
                 artifact.media_type = media_type(artifact.path)
@@ -92,15 +94,6 @@ def deployed(tmp_path: Path, files: dict[str, bytes]) -> Iterator[Deployed]:
     db.close()
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as playwright:
-        path = shutil.which("chromium-headless-shell")
-        started = playwright.chromium.launch(executable_path=path, args=[*NO_GPU, "--no-sandbox"])
-        yield started
-        started.close()
-
-
 @dataclass
 class Opened:
     """A page of a browser of its own, and what went wrong in it."""
@@ -132,6 +125,7 @@ def test_from_an_empty_server_to_a_reviewed_finding(deployed: Deployed, look: Ca
     key = deployed.backend.key("default", Scope.READ, Scope.SUBMIT, Scope.REVIEW)["Authorization"].split()[1]
     opened = look(f"{deployed.address}/")
     page = opened.page
+    assert faults(page) == []
     page.get_by_label("API key").fill("ba_wrong")
     page.get_by_role("button", name="Sign in").click()
     page.get_by_text("not valid").wait_for()
@@ -145,6 +139,7 @@ def test_from_an_empty_server_to_a_reviewed_finding(deployed: Deployed, look: Ca
     assert deployed.ids() == [], "nothing is sent before it was shown"
     page.get_by_label("Label").fill(f"engine 4 {HOSTILE}")
     page.get_by_text("Engine and work").click()
+    assert faults(page) == []
     page.get_by_label("engine serial").fill("V12345")
     page.get_by_role("button", name="Send").click()
     row = page.locator("#list > li")
@@ -154,6 +149,7 @@ def test_from_an_empty_server_to_a_reviewed_finding(deployed: Deployed, look: Ca
     (one,) = deployed.ids()
     deployed.finish(one)
     row.get_by_text("verdict suspect").wait_for()
+    assert faults(page) == []
     row.get_by_role("link", name="View").click()
     page.locator("main.grid").wait_for()
     page.get_by_text("Kept by the service.").wait_for()
@@ -165,6 +161,25 @@ def test_from_an_empty_server_to_a_reviewed_finding(deployed: Deployed, look: Ca
     page.locator(".review.accepted").wait_for()
     assert opened.complaints == []
     assert page.title() != "ran"
+
+
+def test_page_and_start_page_lead_to_the_report(
+    deployed: Deployed, look: Callable[[str], Opened], tmp_path: Path
+) -> None:
+    root = committed("one_model", tmp_path / "result")
+    files = {path.relative_to(root).as_posix(): path.read_bytes() for path in root.rglob("*") if path.is_file()}
+    one = deployed.backend.create("one", label="one")
+    deployed.finish(one, files)
+    page = open_finding(look, deployed, one, 0).page
+    page.keyboard.press("a")
+    wait_until(lambda: len(deployed.records(one)) == 1)
+    with page.expect_download() as told:  # this browser shows no PDF
+        page.get_by_role("link", name="Report").click()
+    assert "accepted" in text_of(Path(told.value.path()).read_bytes())
+    page.goto(f"{deployed.address}/")
+    with page.expect_download() as again:
+        page.locator("#list > li").get_by_role("link", name="Report").click()
+    assert Path(again.value.path()).read_bytes() == Path(told.value.path()).read_bytes()
 
 
 def test_an_inspection_is_cancelled_tried_again_and_deleted(deployed: Deployed, look: Callable[[str], Opened]) -> None:

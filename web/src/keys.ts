@@ -7,7 +7,7 @@ import { stepBoxes } from "./page/FrameView";
 import {
   bestFrame, drawing, finding, frusta, go, helpOpen, overlay, place, play, playing, selectFinding, selectFrame, setLayer, stepFinding, stepFrame, stepVisible,
 } from "./state";
-import { size, surface } from "./session";
+import { keeps, size, surface } from "./session";
 
 interface Key {
   readonly keys: readonly string[];
@@ -83,6 +83,7 @@ export const keysOn = signal(stored());
 
 export function setKeys(on: boolean): void {
   keysOn.value = on;
+  if (!keeps) return;
   try {
     localStorage.setItem(STORED, on ? "" : "1");
   } catch {
@@ -91,6 +92,7 @@ export function setKeys(on: boolean): void {
 }
 
 function stored(): boolean {
+  if (!keeps) return true;
   try {
     return localStorage.getItem(STORED) !== "1";
   } catch {

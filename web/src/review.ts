@@ -5,7 +5,7 @@ import type { Finding, Vec3 } from "./model/data";
 import { fold, lastStanding, newId, readRecords, targetOf, type Action, type Addition, type Review, type Reviewed, type ReviewRecord, type Target, type Value } from "./model/review";
 import { findingName } from "./model/words";
 import { all, author, fromService, hand, mayReview, start } from "./server";
-import { data, detections, questions, size, surface } from "./session";
+import { data, detections, keeps, questions, size, surface } from "./session";
 import { allFindings, announcement, drawing, finding, findingOf, frame, made, measured, place, reviewState, selectFinding, stepFinding } from "./state";
 
 const KEY = `bladeatlas review ${data.fingerprint ?? `${data.title} ${data.frames.length} ${data.detections.length}`} ${data.model.index}`;
@@ -162,6 +162,7 @@ function append(one: Omit<ReviewRecord, "revision" | "time" | "by">): void {
     return;
   }
   local.value = [...local.peek(), record];
+  if (!keeps) return;
   try {
     localStorage.setItem(KEY, JSON.stringify(local.peek()));
   } catch {
@@ -170,6 +171,7 @@ function append(one: Omit<ReviewRecord, "revision" | "time" | "by">): void {
 }
 
 function restored(): readonly ReviewRecord[] {
+  if (!keeps) return [];
   try {
     return readRecords(localStorage.getItem(KEY)) ?? [];
   } catch {

@@ -12,6 +12,8 @@ const POLL_MS = 10_000;
 export const fromService = ADDRESS !== null;
 /** Start page of the service, where one signs in. */
 export const startPage = FOUND ? (FOUND[1] as string).replace(/\/v1\/inspections\/.*/, "/") : "";
+/** The inspection's report, which holds what people said up to now. */
+export const report = FOUND ? `${FOUND[1]}/report.pdf` : "";
 /** What the service has, and behind it what it was not sent yet. */
 export const confirmed = signal<readonly ReviewRecord[]>([]);
 export const unsent = signal<readonly ReviewRecord[]>(fromService ? kept() : []);

@@ -42,6 +42,9 @@ export const failure: string | null = !delivered
     ? `This page reads data of version ${SCHEMA_VERSION}; the data beside it has version ${String(delivered.viewer.schema_version)}.`
     : null;
 
+/** Whether the browser keeps what is done here; not where the data says that the next person shall find nothing of it. */
+export const keeps = !delivered?.forgets;
+
 export const data: ViewerData = failure || !delivered ? EMPTY : delivered.viewer;
 export const marks = marksOf([...data.defects.map((one) => one.label), ...data.detections.map((one) => one.label)]);
 export const findings: ReadonlyMap<number, Finding> = new Map(data.defects.map((one) => [one.id, one]));

@@ -198,3 +198,16 @@ def test_a_style_that_cannot_be_used_is_refused(tmp_path: Path, line: str) -> No
         form_of(RESULTS / "refused", Form.PDF, style)
     with pytest.raises(BadInput, match="is no folder"):
         form_of(RESULTS / "refused", Form.PDF, tmp_path / "absent")
+
+
+def test_a_depth_is_told_where_it_was_measured_and_only_there(tmp_path: Path) -> None:
+    measured = {"length": 3.5, "length_sigma": 0.2, "length_unit": "mm", "depth": 0.45, "depth_sigma": 0.1}
+    folder = changed(tmp_path / "result", defects=lambda defects: defects[0].update(measured))
+    page, text = form_of(folder, Form.HTML).decode(), text_of(form_of(folder, Form.PDF))
+    for told in (page, text):
+        assert told.count("0.45 ± 0.1 mm") == 1
+        assert told.count("wrong by its whole value") == 1
+    rows = list(csv.DictReader(io.StringIO(form_of(folder, Form.CSV).decode())))
+    assert [row["depth"] for row in rows].count("0.45") == 1
+    assert sorted(row["depth_sigma"] for row in rows)[-1] == "0.1"
+    assert "Depth" not in form_of(RESULTS / "two_models", Form.HTML).decode()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from core.advice import FLAG_ADVICE
 from core.flags import FLAG_CODES
 from core.report.build import build_report
 from core.scene.detection import REASONS
@@ -25,5 +26,11 @@ def test_keys_of_the_two_objects_are_documented() -> None:
 
 
 def test_flags_are_documented() -> None:
-    documented = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", (DOCS / "flags.md").read_text("utf-8"), re.MULTILINE))
-    assert documented == dict(FLAG_CODES)
+    rows = re.findall(r"^\| `(\w+)` \| (.*) \| (.*) \|$", (DOCS / "flags.md").read_text("utf-8"), re.MULTILINE)
+    assert {code: meaning for code, meaning, _ in rows} == dict(FLAG_CODES)
+    assert {code: advice for code, _, advice in rows} == dict(FLAG_ADVICE)
+
+
+def test_every_flag_says_what_to_do() -> None:
+    assert set(FLAG_ADVICE) == set(FLAG_CODES)
+    assert all(re.fullmatch(r"[A-Z].*\.", advice) for advice in FLAG_ADVICE.values())

@@ -5,15 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
+import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
+from filelock import FileLock
 
 from core.errors import BadInput
 from core.outputs import DEFECTS
 from core.report.csv_form import csv_line
-from core.review.published import REVIEW, apply_records, read_review, review_document, reviewed_result
+from core.review.published import LOCK, REVIEW, apply_records, read_review, review_document, reviewed_result
 from core.review.record import ReviewRecord
 from core.review.tables import REVIEW_COLUMNS, review_cells
 from core.review.target import Target
@@ -39,7 +41,7 @@ def parsed(*rows: dict[str, Any]) -> list[ReviewRecord]:
 
 
 def hashes(folder: Path) -> dict[str, str]:
-    files = (path for path in folder.rglob("*") if path.is_file() and path.name != REVIEW)
+    files = (path for path in folder.rglob("*") if path.is_file() and path.name not in (REVIEW, LOCK))
     return {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
@@ -137,3 +139,16 @@ def test_a_document_comes_back(folder: Path, tmp_path: Path) -> None:
 def test_a_folder_that_is_no_result_is_said(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="finished result"):
         reviewed_result(tmp_path)
+
+
+def test_two_who_add_at_once_lose_nothing(folder: Path) -> None:
+    apply_records(folder, parsed(record(folder, "a")))
+    other = threading.Thread(target=lambda: apply_records(folder, parsed(record(folder, "c"))))
+    with FileLock(folder / LOCK):
+        other.start()
+        other.join(0.3)
+        assert other.is_alive(), "it waits for who adds"
+        both = [*parsed(record(folder, "a")), *parsed(record(folder, "b"), record(folder, "b"))[1:]]
+        (folder / REVIEW).write_text(json.dumps(review_document(both)), encoding="utf-8")
+    other.join(10)
+    assert [one.id for one in reviewed_result(folder).records] == ["a", "b", "c"]

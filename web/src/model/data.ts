@@ -12,7 +12,6 @@ export interface Frame {
   readonly name: string;
   readonly registered: boolean;
   readonly reason: string | null;
-  readonly reason_text?: string | null;
   /** Row-major 3x4, COLMAP's. */
   readonly cam_from_world: readonly number[] | null;
   readonly picture: string | null;
@@ -139,7 +138,7 @@ export interface Row {
 export interface ViewerData {
   readonly schema_version: number;
   readonly title: string;
-  readonly model: { readonly index: number; readonly count: number; readonly unit: string; readonly scale: number | null };
+  readonly model: { readonly index: number; readonly count: number; readonly unit: string; readonly scale: number | null; readonly findings?: readonly [number, number] | null };
   readonly models: readonly { readonly index: number; readonly href: string }[];
   readonly videos: readonly Video[];
   readonly camera: CameraData | null;
@@ -166,6 +165,8 @@ export interface Delivered {
   readonly viewer: ViewerData;
   /** Base64 of surface.glb. */
   surface: string | null;
+  /** Nothing that is done to the page is kept; in the scenes of a study. */
+  readonly forgets?: boolean;
 }
 
 /** The only version of `viewer.json` that this page reads. */

@@ -41,7 +41,7 @@ function Header(): JSX.Element {
       <h1><bdi>{title}</bdi></h1>
       <p class="lead">
         <span class={`verdict ${verdict}`} title={VERDICTS[verdict] ?? ""}>{verdict}</span>
-        {" "}{data.defects.length} {data.defects.length === 1 ? "finding" : "findings"}, {data.detections.length} {data.detections.length === 1 ? "detection" : "detections"}, {data.frames.length} frames
+        {" "}{data.defects.length} {data.defects.length === 1 ? "finding" : "findings"}{inAll(model.findings)}, {data.detections.length} {data.detections.length === 1 ? "detection" : "detections"}, {data.frames.length} frames
         {model.unit === "model" ? ", unscaled" : `, in ${model.unit}`}
       </p>
       {models.length > 0 && (
@@ -61,6 +61,11 @@ function Header(): JSX.Element {
       <button type="button" class="help" onClick={() => (helpOpen.value = true)} aria-label="Keys" title="Keys (?)">?</button>
     </header>
   );
+}
+
+/** Where several models hold findings, how many there are in all: a range, since one place may have a record in each. */
+function inAll(range: readonly [number, number] | null | undefined): string {
+  return range ? ` here (${range[0]} to ${range[1]} in all models)` : "";
 }
 
 /** Links lead to other pages of the result only. */

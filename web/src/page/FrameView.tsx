@@ -222,7 +222,7 @@ function Said(): JSX.Element {
   const one = frame.value;
   const click = asked.value;
   let text = "";
-  if (one && !one.registered) text = `Not registered: ${one.reason_text ?? reasonText(data, one.reason ?? "not_registered")}. The surface cannot be laid over it.`;
+  if (one && !one.registered) text = `Not registered: ${reasonText(data, one.reason ?? "not_registered")}. The surface cannot be laid over it.`;
   else if (surfaceReason) text = surfaceReason;
   else if (click?.shown.reason === null) {
     const { distance, incidence_deg, finding: on, support } = click.shown;

@@ -167,7 +167,7 @@ function Frames(): JSX.Element {
                   <span class="head"><b>Frame {one.source_index}</b> {data.videos.length > 1 && <span>video {one.video}</span>} <span>{seconds(one.time_s)}</span></span>
                   <span class="facts">
                     <span>{boxes ? `${boxes} ${boxes === 1 ? "detection" : "detections"}` : "no detection"}</span>
-                    {!one.registered && <span class="warn">not registered: {one.reason_text ?? reasonText(data, one.reason ?? "not_registered")}</span>}
+                    {!one.registered && <span class="warn">not registered: {reasonText(data, one.reason ?? "not_registered")}</span>}
                   </span>
                 </span>
               </button>

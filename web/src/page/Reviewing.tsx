@@ -6,7 +6,7 @@ import type { Finding } from "../model/data";
 import { REASONS, type Review } from "../model/review";
 import { findingName, measured } from "../model/words";
 import { act, add, asking, counts, draw, exportReview, kept, records, reviewOf, targetFor, unattached, undo, type Asked } from "../review";
-import { fromService, leaveOut, mayReview, notice, sendAnyway, severities, startPage, trouble, unsent } from "../server";
+import { fromService, leaveOut, mayReview, notice, report, sendAnyway, severities, startPage, trouble, unsent } from "../server";
 import { data, detections, frames } from "../session";
 import { allFindings, drawing, finding } from "../state";
 
@@ -120,6 +120,7 @@ export function Exports(): JSX.Element {
       {fromService && !mayReview.value && <span class="warn">Your key may not review.</span>}
       <button type="button" disabled={!mayReview.value} onClick={() => draw("add")} title="Add a finding (D)">Add a finding</button>
       <button type="button" disabled={!records.value.length} onClick={exportReview}>Save review.json</button>
+      {fromService && <a href={report}>Report</a>}
       {!kept.value && <span class="warn">This browser keeps nothing for this page: save before you close it.</span>}
       {unattached.value.length > 0 && (
         <details><summary>{unattached.value.length} reviewed before and not found here</summary>

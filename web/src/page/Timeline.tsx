@@ -80,7 +80,7 @@ const Bands = differs(({ height }: { readonly height: number; readonly wide: num
     <text class="lane" x="4" y="41">detections</text>
     {order.map((one, k) => (
       <rect key={one.index} class={one.registered ? "registered" : "lost"} x={x(one.video, one.time_s)} y="18" width={Math.max(1, x(one.video, one.time_s + (lasting[k] ?? 0)) - x(one.video, one.time_s))} height="11">
-        {!one.registered && <title>{`Frame ${one.source_index}: ${one.reason_text ?? reasonText(data, one.reason ?? "not_registered")}`}</title>}
+        {!one.registered && <title>{`Frame ${one.source_index}: ${reasonText(data, one.reason ?? "not_registered")}`}</title>}
       </rect>
     ))}
     {order.map((one) => {

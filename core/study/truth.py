@@ -71,15 +71,17 @@ def largest(records: list[JsonObject]) -> JsonObject:
 
 def boxed_finding(result: Path) -> int:
     """The finding whose box is asked about: that of the first detection that belongs to one."""
-    return int(_boxed(result)["defect_id"])
+    return int(boxed(result)["defect_id"])
 
 
 def boxed_frame(result: Path) -> int:
     """Index of the frame with that box, among the frames of the run."""
-    return int(_boxed(result)["frame_index"])
+    return int(boxed(result)["frame_index"])
 
 
-def _boxed(result: Path) -> JsonObject:
+def boxed(result: Path) -> JsonObject:
+    """The row of the detection whose box is asked about: the first of a finding that is alone on its frame, else the
+    first of a finding."""
     rows: list[JsonObject] = read_json(result / DETECTIONS)
     own = [one for one in rows if one["defect_id"] is not None and one["frame_index"] is not None]
     # A frame with one box leaves no doubt which is meant.

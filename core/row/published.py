@@ -5,11 +5,12 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import BadInput
+from core.flags import Flag, Verdict, in_order, verdict_by
 from core.io.sparse import open_model
 from core.json_files import JsonObject, read_json, replace_file, write_json
 from core.mapping.scene import oriented
@@ -18,6 +19,7 @@ from core.outputs import (
     DEFECT_SURFACE,
     DEFECTS,
     DETECTIONS,
+    QUALITY,
     ROW,
     ROW_MAP,
     SPARSE,
@@ -94,9 +96,29 @@ def write_row(folder: Path, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
     if records:
         changed = _changed(records, defects)
         replace_file(folder / DEFECTS, lambda path: write_json(path, changed))
+    _flag(folder, {number: row.flags for number, row in found.items() if isinstance(row, NoRow)})
     for number in sorted(found, reverse=True):
         _write_row(model_folder(folder, number), documents[number])
     return found[0]
+
+
+def _flag(folder: Path, flags: Mapping[int, Sequence[Flag]]) -> None:
+    """Put the flags of the row in place of those that quality.json has of it, and the verdict where it changes."""
+    if not (folder / QUALITY).is_file():
+        return
+    quality: JsonObject = read_json(folder / QUALITY)
+    kept = [flag for flag in quality["flags"] if flag["code"] != "row_irregular"]
+    new = [flag.of_model(number) for number in sorted(flags) for flag in flags[number]]
+    if not new and kept == quality["flags"]:
+        return
+    flags_now = in_order([*(Flag.from_dict(flag) for flag in kept), *new])
+    shown = [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags_now]
+    verdict = Verdict(quality["verdict"])
+    if verdict != Verdict.REFUSED:
+        verdict = verdict_by(flags_now)
+    replace_file(folder / QUALITY, lambda path: write_json(path, {**quality, "verdict": verdict, "flags": shown}))
+    summary = read_json(folder / SUMMARY)
+    replace_file(folder / SUMMARY, lambda path: write_json(path, {**summary, "verdict": verdict}))
 
 
 def _write_row(folder: Path, document: JsonObject) -> None:

@@ -20,7 +20,8 @@ from core.io.timeline import read_defects
 from core.report.csv_form import read_csv
 from core.report.tables import write_csv
 from core.row.model import NoRow, UnknownRow
-from core.row.published import write_row
+from core.row.published import _flag, write_row
+from core.row.regular import Irregularity
 from core.scene.detection import DETECTION_COLUMNS
 from core.scene.on_row import ROW_COLUMNS
 from core.surface.ply import write_mesh
@@ -101,3 +102,20 @@ def test_a_folder_that_is_no_result_is_refused(tmp_path: Path) -> None:
 def test_what_a_row_cannot_be_told(pair: str) -> None:
     with pytest.raises(BadInput):
         told_row([pair])
+
+
+def test_an_irregular_row_is_flagged_in_quality_and_the_flag_goes_with_it(tmp_path: Path) -> None:
+    folder = published(tmp_path / "result")
+    mild = {"code": "gap_spanned", "severity": "info", "value": None, "threshold": None, "where": ""}
+    quality = {"verdict": "ok", "state": "succeeded", "flags": [{**mild, "meaning": "text"}]}
+    (folder / "quality.json").write_text(json.dumps(quality))
+    pair = Irregularity(0.3, (2, 3), 4)
+    _flag(folder, {1: NoRow(UnknownRow.PITCH_NOT_CONSTANT, 0.4, pair).flags})
+    after = json.loads((folder / "quality.json").read_text())
+    assert [flag["code"] for flag in after["flags"]] == ["row_irregular", "gap_spanned"]
+    assert after["flags"][0]["where"].startswith("model 1, blades 2 and 3 of the 4 seen")
+    assert (after["verdict"], json.loads((folder / "summary.json").read_text())["verdict"]) == ("suspect", "suspect")
+    _flag(folder, {1: []})
+    again = json.loads((folder / "quality.json").read_text())
+    assert [flag["code"] for flag in again["flags"]] == ["gap_spanned"]
+    assert again["verdict"] == "ok"

@@ -144,10 +144,10 @@ STAGES: dict[str, StageSpec] = {
             "timeline",
             "scale",
             *_options("row", "radius_mm", "radius_sigma_mm", "radius_at"),
-            version=10,
+            version=11,
             weight=0.5,
         ),
         _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
-        _spec("viewer", version=4, weight=2),
+        _spec("viewer", version=5, weight=2),
     )
 }

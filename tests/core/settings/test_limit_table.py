@@ -16,7 +16,7 @@ TABLE = (
 )
 ROWS = (
     Limit(2, Zone.LEADING_EDGE, "Nick", 0.0, 1.0, 0.76, None, 3),
-    Limit(4, Zone.ANY, "dent", 0.0, 0.3, 1.5, pytest.approx(0.254), None),
+    Limit(4, Zone.ANY, "dent", 0.0, 0.3, 1.5, 25.4 * 0.01, None),
 )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from cli.account_arguments import add_account_commands
-from cli.input_files import add_calibration, add_format
+from cli.input_files import add_calibration, add_format, add_limits
 from cli.recordings import add_recordings
 from cli.remote_arguments import add_remote_commands
 from cli.terminal import say
@@ -149,8 +149,9 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="what is known of the row: count, zero_blade, direction, edge_a (options row.*)",
+        help="what is known of the row: count, zero_blade, direction, edge_a, radius_mm (options row.*)",
     )
+    add_limits(row)
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")
     row.add_argument("--json", action="store_true", help="print row.json")
     review = _add(commands, "review", "say what people say of the findings of a result; add records of a review.json")
@@ -195,6 +196,10 @@ def _report(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     report.add_argument(
         "--form", action="append", default=[], metavar="pdf|html|csv|json", help="only this form (repeatable)"
     )
+    add_limits(report)
+    report.add_argument(
+        "--units", choices=["mm", "in"], default="mm", help="unit of the lengths shown where a scale is known (mm)"
+    )
     report.add_argument("--style", type=Path, metavar="DIR", help="folder of the house style (docs/report.md)")
     report.add_argument("--reviewer", metavar="NAME", help="who signs (the person of the review, where it is one)")
     report.add_argument("--date", metavar="YYYY-MM-DD", help="day of the report (that of the last word of the review)")
@@ -216,6 +221,7 @@ def _run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     add_recordings(run)
     add_format(run)
     add_calibration(run)
+    add_limits(run)
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="result folder, made when missing")
     _preset(run, default=None)
     _set(run, "set one option (repeatable); `bladeatlas options` lists them")

@@ -10,6 +10,8 @@ from pathlib import Path
 
 from core.annotations.foreign.archive import packed_folder
 from core.calibration.files import read_calibration
+from core.errors import BadInput
+from core.settings.limits import MAX_BYTES, parse_limits
 
 OPTION = "input.annotation_format"
 
@@ -36,6 +38,35 @@ def calibration_options(path: Path | None) -> dict[str, object]:
     if path is None:
         return {}
     return read_calibration(path).options()
+
+
+def limits_text(path: Path) -> str:
+    """The table of limits in a file.
+
+    Raises:
+        BadInput: the file cannot be read or is no such table; the message names the line.
+    """
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+        text = data.decode("utf-8-sig")
+    except OSError as error:
+        raise BadInput(f"cannot read the table of limits: {error.strerror}", where=str(path)) from None
+    except UnicodeDecodeError:
+        raise BadInput("the table of limits is no text in UTF-8", where=str(path)) from None
+    parse_limits(text)
+    return text
+
+
+def limit_options(path: Path | None) -> dict[str, object]:
+    """The options that a table of limits stands for; none without one."""
+    return {} if path is None else {"limits.table": limits_text(path)}
+
+
+def add_limits(command: argparse.ArgumentParser) -> None:
+    """Let a command take `--limits`."""
+    text = "limits of the shop, CSV or JSON (docs/limits.md): every finding is compared with them"
+    command.add_argument("--limits", type=Path, metavar="FILE", help=text)
 
 
 def add_calibration(command: argparse.ArgumentParser) -> None:

@@ -6,13 +6,15 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from cli.input_files import limits_text
 from cli.terminal import say, say_json
 from core.errors import BadInput
-from core.inspection_report.document import is_day, report_document
+from core.inspection_report.document import Shown, is_day, report_document
 from core.inspection_report.forms import Form, written
 from core.inspection_report.source import files_below, read_source
 from core.outputs import DEFECTS
 from core.review.published import reviewed_result
+from core.settings.limits import parse_limits
 
 
 def command(parsed: argparse.Namespace) -> int:
@@ -22,7 +24,9 @@ def command(parsed: argparse.Namespace) -> int:
         raise BadInput(f"'{parsed.date}' is no day of the form YYYY-MM-DD", where="--date")
     source = read_source(files_below(result))
     reviewed = reviewed_result(result).reviewed if (result / DEFECTS).is_file() else None
-    document = report_document(source, reviewed, parsed.reviewer, parsed.date)
+    limits = None if parsed.limits is None else parse_limits(limits_text(parsed.limits))
+    shown = Shown(limits=limits, inches=parsed.units == "in")
+    document = report_document(source, reviewed, parsed.reviewer, parsed.date, shown=shown)
     paths = []
     for form in chosen(parsed.form):
         data = written(form, document, source, parsed.style)

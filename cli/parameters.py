@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cli.input_files import calibration_options, with_format
+from cli.input_files import calibration_options, limit_options, with_format
 from core.errors import BadInput
 from core.metadata import parse_metadata
 from core.settings import Settings, make_settings
@@ -49,6 +49,7 @@ def from_arguments(parsed: argparse.Namespace) -> Parameters:
     if parsed.seed is not None:
         options["seed"] = parsed.seed
     options.update(calibration_options(parsed.calibration))
+    options.update(limit_options(parsed.limits))
     options.update(parse_assignment(text) for text in with_format(parsed))
     return Parameters(parsed.preset or base.preset, options, base.label, base.external_id, base.priority, base.metadata)
 

@@ -17,7 +17,7 @@ from cli import exits
 from cli.client import Client, InspectionInfo
 from cli.client.client import chosen
 from cli.client.transfers import no_progress
-from cli.input_files import calibration_options, with_format
+from cli.input_files import calibration_options, limit_options, with_format
 from cli.parameters import Parameters, parse_assignment, parse_priority, read_parameters
 from cli.recordings import as_files, recordings_of
 from cli.terminal import console, duration, say, say_json, visible
@@ -55,7 +55,7 @@ def submit(parsed: argparse.Namespace) -> int:
 def _submitted_parameters(parsed: argparse.Namespace) -> dict[str, Any]:
     """Parameter file first, then what the command line says over it; checked here before anything is sent."""
     base = read_parameters(parsed.parameters) if parsed.parameters else Parameters()
-    options = {**base.options, **calibration_options(parsed.calibration)}
+    options = {**base.options, **calibration_options(parsed.calibration), **limit_options(parsed.limits)}
     options.update(parse_assignment(text) for text in with_format(parsed))
     priority = base.priority if parsed.priority is None else parse_priority(parsed.priority, "--priority")
     wanted = Parameters(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from cli.input_files import add_calibration, add_format
+from cli.input_files import add_calibration, add_format, add_limits
 from cli.recordings import add_recordings
 from core.settings import PRESET_NAMES
 
@@ -35,6 +35,7 @@ def _submit(submit: argparse.ArgumentParser) -> None:
     add_recordings(submit)
     add_format(submit)
     add_calibration(submit)
+    add_limits(submit)
     submit.add_argument("--preset", metavar="|".join(PRESET_NAMES), help="where the values start")
     submit.add_argument(
         "--set", action="append", default=[], dest="assignments", metavar="NAME=VALUE", help="set one option"

@@ -10,11 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from cli.input_files import limits_text
 from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.json_files import read_json
 from core.outputs import ROW
+from core.scene.size import Scale
 from core.settings import make_settings
+from core.settings.limits import parse_limits
 from core.settings.row import RowSettings
 
 NOT_SEEN = 0.5
@@ -27,7 +30,8 @@ def command(parsed: argparse.Namespace) -> int:
     from core.row.published import write_row
 
     folder: Path = parsed.result
-    write_row(folder, told_row(parsed.set))
+    limits = None if parsed.limits is None else parse_limits(limits_text(parsed.limits))
+    write_row(folder, told_row(parsed.set), limits)
     document = read_json(folder / ROW)
     if parsed.json:
         say_json(document, indent=1)
@@ -52,13 +56,15 @@ def told_row(pairs: Sequence[str]) -> RowSettings:
 
 
 def row_lines(document: dict[str, Any]) -> list[str]:
-    """What the object of ``row.json`` says, in two lines; in one where the row is unknown."""
+    """What the object of ``row.json`` says, in two or three lines; in one where the row is unknown."""
     if document["status"] == "unknown":
         return [f"row: unknown: {document['reason_text']}"]
     low, high = document["count"]
     blades = str(low) if low == high else f"{low} to {high}"
     pitch = f"{document['pitch_deg']:.3f} +- {document['pitch_sigma_deg']:.3f} degrees"
-    return [f"row: pitch {pitch}, {blades} blades", closing_line(document)]
+    scale = Scale.from_dict(document.get("scale") or {})
+    known = [] if scale is None else [f"scale: {scale.value:.4g} +- {scale.sigma:.2g} mm, from {scale.source}"]
+    return [f"row: pitch {pitch}, {blades} blades", *known, closing_line(document)]
 
 
 def closing_line(document: dict[str, object]) -> str:

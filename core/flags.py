@@ -6,7 +6,7 @@ A flag is a small fact. Stages put flags into their facts, the report collects t
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import NotRequired, TypedDict
 
@@ -56,6 +56,7 @@ FLAG_CODES: Mapping[str, str] = {
     "parts_after_veto": "every whole model was wrong; the result is a part of one, between the places that did not fit",
     "perspective_after_veto": "every model of a fisheye lens was wrong; the result is that of a perspective lens",
     "weak_join": "the model hangs together by few moving points at one place; its parts may not fit each other",
+    "row_irregular": "the blades are not equally far apart: the model is bent or joined wrongly; no row is told",
     "not_static": "typical pairs of images do not fit the model: the scene bends, or the model is wrong",
     "two_motions": "many pairs of images show a motion that is not the model's: something moves on its own",
     "planar_start": "a plane or a turn explains nearly all pairs of images: shape and lens have little hold",
@@ -111,6 +112,10 @@ class Flag:
         """One clause for people."""
         return FLAG_CODES[self.code]
 
+    def of_model(self, number: int) -> Flag:
+        """The flag as that of one of several models; that of the first names none."""
+        return replace(self, where=f"model {number}, {self.where}") if number else self
+
     def to_dict(self) -> FlagFields:
         """The form of `quality.json`: code, severity, value, threshold, where; numbers rounded to 6 digits."""
         return {
@@ -143,6 +148,19 @@ def _severity(value: str) -> Severity:
 def worst(flags: list[Flag]) -> Severity | None:
     """The highest severity among `flags`; None without flags."""
     return max((flag.severity for flag in flags), key=SEVERITIES.index, default=None)
+
+
+def in_order(flags: Iterable[Flag]) -> list[Flag]:
+    """The flags worst first, then by code and place, none twice: of equal ones the first."""
+    unique: dict[tuple[str, str], Flag] = {}
+    for flag in flags:
+        unique.setdefault((flag.code, flag.where), flag)
+    return sorted(unique.values(), key=lambda flag: (-SEVERITIES.index(flag.severity), flag.code, flag.where))
+
+
+def verdict_by(flags: Iterable[Flag]) -> Verdict:
+    """The verdict on a result with a model: `suspect` with any warning or error, else `ok`."""
+    return Verdict.SUSPECT if any(flag.severity != Severity.INFO for flag in flags) else Verdict.OK
 
 
 def error_codes(checks: Iterable[Mapping[str, object]]) -> str:

@@ -18,6 +18,8 @@ SURFACE = "dense/mesh_poisson.ply"
 """Supported surface."""
 DEFECT_SURFACE = "mapping/mesh_defects.ply"
 """Surface in the colours of its defects."""
+DEFECT_GLB = "mapping/mesh_defects.glb"
+"""The same for 3D viewers, every blade a node of its own."""
 CONFIDENCE = "mapping/confidence.json"
 """What the confidence of every placed detection is made of."""
 DETECTIONS = "mapping/detections.json"
@@ -32,6 +34,8 @@ ROW = "row.json"
 """The row of blades."""
 ROW_MAP = "row_map.svg"
 """Its map: blades seen, coverage, findings."""
+LIMITS = "limits.json"
+"""Findings compared with the limits of the shop, where these are told."""
 VIEWER = "viewer"
 """Folder of the page of a model, below it: what the stages left, and what is written when it is published."""
 VIEWER_PAGE = f"{VIEWER}/index.html"
@@ -79,7 +83,7 @@ OUTPUTS: tuple[Output, ...] = (
     Output(SURFACE, (("mesh", "mesh_poisson.ply"),)),
     Output("dense/mesh_full.ply", (("mesh", "mesh_full.ply"),)),
     Output(DEFECT_SURFACE, (("timeline", "mesh_defects.ply"),), needs_trust=True),
-    Output("mapping/mesh_defects.glb", (("timeline", "mesh_defects.glb"),), needs_trust=True),
+    Output(DEFECT_GLB, (("timeline", "mesh_defects.glb"),), needs_trust=True),
     Output("mapping/defect_points.ply", (("map_defects", "defect_points.ply"),), needs_trust=True),
     Output(CONFIDENCE, (("timeline", "confidence.json"),), needs_trust=True),
     Output(ROW, (("timeline", ROW),), needs_trust=True),

@@ -135,8 +135,8 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec("fuse", "fusion", weight=3),
         _spec("mesh", "mesh", weight=2),
-        _spec("row", "seed", weight=3),
-        _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", weight=1),
+        _spec("row", "seed", version=2, weight=3),
+        _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", version=2, weight=1),
         _spec("map_defects", "mapping", version=11, weight=0.6),
         _spec(
             "timeline",
@@ -144,10 +144,10 @@ STAGES: dict[str, StageSpec] = {
             "timeline",
             "scale",
             *_options("row", "radius_mm", "radius_sigma_mm", "radius_at"),
-            version=10,
+            version=11,
             weight=0.5,
         ),
         _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
-        _spec("viewer", version=4, weight=2),
+        _spec("viewer", version=5, weight=2),
     )
 }

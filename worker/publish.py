@@ -141,9 +141,9 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
     files = dict(_files(folders, facts, trusted=report.verdict != Verdict.REFUSED))
     scratch.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="tables-", dir=scratch) as folder:
-        write_tables(report, Path(folder))
+        compared = set(write_tables(report, Path(folder))) - set(TABLES)
         pages = write_pages(report, folders, files, Path(folder))
-        yield Collection(report, files, {path: Path(folder) / path for path in (*pages, *TABLES)})
+        yield Collection(report, files, {path: Path(folder) / path for path in (*pages, *sorted(compared), *TABLES)})
 
 
 def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from http import HTTPStatus
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
@@ -19,7 +19,7 @@ from api.state import state_of
 from api.submit import invalid
 from api.threads import LimitedThreads
 from core.fingerprint import digest_of, digest_of_file
-from core.inspection_report.document import is_day, report_document
+from core.inspection_report.document import Shown, is_day, report_document
 from core.inspection_report.forms import MEDIA_TYPES, POLICY, Form, written
 from core.inspection_report.pictures import files_of
 from core.inspection_report.source import ReadFile, read_source
@@ -47,6 +47,7 @@ async def report(
     form: Form,
     reviewer: Annotated[Text | None, Query(description="who signs")] = None,
     date: Annotated[str | None, Query(description="day of the report, `YYYY-MM-DD`")] = None,
+    units: Annotated[Literal["mm", "in"], Query(description="of the lengths in texts where a scale is known")] = "mm",
     if_none_match: Annotated[str | None, Header(description="an `ETag` that is at hand")] = None,
 ) -> Response:
     """Findings with pictures, places and sizes, what was not seen, and how far the result can be trusted.
@@ -58,7 +59,7 @@ async def report(
         raise invalid([FieldError(pointer="/date", detail="no day of the form YYYY-MM-DD")])
     services = state_of(request).services
     return await _SETTING.run(
-        lambda: _answer(services, inspection_id, caller.owner, form, reviewer, date, if_none_match)
+        lambda: _answer(services, inspection_id, caller.owner, form, reviewer, date, units == "in", if_none_match)
     )
 
 
@@ -69,6 +70,7 @@ def _answer(
     form: Form,
     reviewer: str | None,
     date: str | None,
+    inches: bool,
     known: str | None,
 ) -> Response:
     row = find_inspection(services, inspection_id, owner)
@@ -78,7 +80,7 @@ def _answer(
     ended = None if row.ended_at is None else row.ended_at.date().isoformat()
     source = read_source(_files(services, views))
     reviewed = Reviews(services.db).reviewed(inspection_id)
-    document = report_document(source, reviewed, reviewer, date, ended)
+    document = report_document(source, reviewed, reviewer, date, ended, Shown(inches=inches))
     style = services.settings.report_style
     pictures = {path: views[path].sha256 for path in files_of(document["findings"]) if path in views}
     made_of = {"form": form, "document": document, "pictures": pictures, "style": _style_digests(style)}

@@ -31,8 +31,12 @@ class ScaleTold(BaseModel):
     video: int = Field(0, description="number of its video")
 
 
+_TOLD = ("row.", "limits.")
+"""Beginnings of options that null takes back."""
+
+
 class RowTold(BaseModel):
-    """The options `row.*` that change; those that are not named stay, null takes one back."""
+    """The options `row.*`, `scale.*` and `limits.table` that change; those not named stay, null takes one back."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"count": 64, "edge_a": "leading"}})
 
@@ -44,6 +48,7 @@ class RowTold(BaseModel):
     radius_sigma_mm: float | None = Field(None, description="its standard deviation, mm")
     radius_at: Literal["root", "tip"] | None = Field(None, description="the end of the blades that it is of")
     scale: ScaleTold | None = Field(None, description="a known length in a frame")
+    limits: str | None = Field(None, description="limits of the shop, a table in CSV or JSON; null takes it back")
 
     def options(self, known: dict[str, Any]) -> dict[str, Any]:
         """The options of a run, changed."""
@@ -53,8 +58,10 @@ class RowTold(BaseModel):
             scale = given.pop("scale") or {}
             options = {name: value for name, value in options.items() if not name.startswith("scale.")}
             options |= {f"scale.{name}": value for name, value in scale.items()}
+        if "limits" in given:
+            options["limits.table"] = given.pop("limits")
         options |= {f"row.{name}": value for name, value in given.items()}
-        return {name: value for name, value in options.items() if value is not None or not name.startswith("row.")}
+        return {name: value for name, value in options.items() if value is not None or not name.startswith(_TOLD)}
 
 
 @router.patch(

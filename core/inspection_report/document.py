@@ -7,17 +7,41 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import date
 
-from core.inspection_report.finding import UNKNOWN, added_objects, blade_text, finding_objects, unattached_texts
+from core.inspection_report.finding import (
+    UNKNOWN,
+    added_objects,
+    blade_text,
+    finding_objects,
+    unattached_texts,
+    verdict_text,
+)
 from core.inspection_report.source import ReportSource
 from core.json_files import JsonObject
+from core.report.limits import limit_text, limits_document, limits_of
 from core.review.state import Review, Reviewed
-from core.scene.defect import MODEL_UNIT
+from core.scene.defect import MODEL_UNIT, DefectRecord
+from core.settings.limits import MM_PER_INCH, Limit
 
 SCHEMA_VERSION = 1
 _DAY = len("YYYY-MM-DD")
 NO_ROW = "the row of blades was not looked for"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How a report shows what is published."""
+
+    limits: Sequence[Limit] | None = None
+    """Of the shop; None = those that the result was compared with, if any."""
+    inches: bool = False
+    """Lengths in texts in inches instead of millimetres; numbers stay in the unit that stands beside them."""
+
+
+AS_PUBLISHED = Shown()
+"""In millimetres, with the result's own limits."""
 
 
 def report_document(
@@ -26,6 +50,7 @@ def report_document(
     reviewer: str | None = None,
     day: str | None = None,
     ended: str | None = None,
+    shown: Shown = AS_PUBLISHED,
 ) -> JsonObject:
     """The object of report.json.
 
@@ -35,10 +60,12 @@ def report_document(
         reviewer: who signs; by default whoever the review names, if that is one person.
         day: of the report, ``YYYY-MM-DD``; by default that of the last word of the review.
         ended: day on which the inspection ended: that of the report where nothing else tells one.
+        shown: unit of the lengths in texts, and limits of the shop.
     """
     summary, quality = source.summary, source.quality
     reviews = {} if reviewed is None else {one.name: one.review for one in reviewed.findings}
-    findings = finding_objects(source, reviews)
+    compared = _compared(source, shown)
+    findings = finding_objects(source, reviews, compared, inches=shown.inches)
     coverage = [_coverage(model, source.rows.get(model), findings) for model in source.models]
     return {
         "schema_version": SCHEMA_VERSION,
@@ -50,13 +77,14 @@ def report_document(
         "verdict": quality.get("verdict"),
         "flags": [_flag(flag) for flag in quality.get("flags") or ()],
         "notes": list(quality.get("notes") or ()),
-        "scale": _scale(summary),
+        "scale": _scale(summary, shown.inches),
+        "limits": None if compared is None else _limits(compared, source, shown.inches),
         "counts": _counts(findings, source),
         "findings": findings,
         "coverage": coverage,
         "not_seen": _not_seen(coverage, quality),
         "method": _method(summary),
-        "added": [] if reviewed is None else added_objects(reviewed),
+        "added": [] if reviewed is None else added_objects(reviewed, inches=shown.inches),
         "review": {
             "reviewer": reviewer or _only_reviewer(reviews.values()),
             "date": day or _last_day(reviews.values()) or ended,
@@ -125,15 +153,46 @@ def _flag(flag: JsonObject) -> JsonObject:
     }
 
 
-def _scale(summary: JsonObject) -> JsonObject:
+def _compared(source: ReportSource, shown: Shown) -> JsonObject | None:
+    """The object of limits.json, for the limits that are told or else the result's own; None without any."""
+    limits = shown.limits
+    if limits is None and source.limits is not None:
+        limits = limits_of(source.limits)
+    if limits is None:
+        return None
+    records = [DefectRecord.from_dict(record) for record in source.defects]
+    return limits_document(limits, records, inches=shown.inches)
+
+
+def _limits(compared: JsonObject, source: ReportSource, inches: bool) -> JsonObject:
+    """The table of the shop in words, and what it says of the numbers of findings."""
+    zero = {model: (row or {}).get("zero_blade") is None for model, row in source.rows.items()}
+    return {
+        "rows": [{"line": limit["line"], "text": limit_text(limit, inches=inches)} for limit in compared["limits"]],
+        "counts": [
+            {
+                "text": blade_text(one["blade"], relative=one["blade"] is not None and zero.get(0, True)),
+                "verdict": verdict_text(one["verdict"]),
+                "reason": one["reason"],
+            }
+            for one in compared["counts"]
+        ],
+        "note": f"Compared at {compared['sigmas']:g} standard deviations. What it means for the part a person says.",
+    }
+
+
+def _scale(summary: JsonObject, inches: bool) -> JsonObject:
     scale = summary.get("scale") or {}
     unit = scale.get("unit") or MODEL_UNIT
     if unit == MODEL_UNIT:
         text = "No scale is known: sizes are unscaled, and may be compared with each other but not read as millimetres."
     else:
         sigma = scale.get("sigma")
-        spread = "" if sigma is None else f" ± {sigma:.2g}"
-        text = f"Scale: {scale['value']:.4g}{spread} {unit} in a unit of the model, from {scale.get('source')}."
+        factor, name = (1.0 / MM_PER_INCH, "in") if inches else (1.0, unit)
+        spread = "" if sigma is None else f" ± {factor * sigma:.2g}"
+        text = (
+            f"Scale: {factor * scale['value']:.4g}{spread} {name} in a unit of the model, from {scale.get('source')}."
+        )
     return {"unit": unit, "text": text}
 
 

@@ -11,6 +11,8 @@ from core.review.state import Review, Reviewed, ReviewedFinding
 from core.review.target import Target
 from core.review.words import ReviewState, TargetKind
 from core.scene.defect import MODEL_UNIT
+from core.scene.size import LengthUnit
+from core.settings.limits import MM_PER_INCH
 
 UNKNOWN = "unknown"
 UNSCALED = "unscaled"
@@ -18,18 +20,45 @@ NOT_REVIEWED = "not reviewed"
 _NO_PART = ("", UNKNOWN, None)
 
 
-def finding_objects(source: ReportSource, reviews: Mapping[str, Review]) -> list[JsonObject]:
+def finding_objects(
+    source: ReportSource, reviews: Mapping[str, Review], compared: JsonObject | None = None, *, inches: bool = False
+) -> list[JsonObject]:
     """All findings of a result, the largest first, unknown sizes last, equal ones by number.
 
     Args:
         source: of the result.
         reviews: what people say, by the name of the finding; those that are not in it were not reviewed.
+        compared: the object of limits.json; None where no limits of the shop were told.
+        inches: lengths in texts in inches instead of mm.
     """
-    found = [_finding(record, source, reviews.get(f"D{record['id']}")) for record in source.defects]
+    limits = {one["defect"]: one for one in (compared or {}).get("findings", ())}
+    found = [
+        {
+            **_finding(record, source, reviews.get(f"D{record['id']}"), inches),
+            "limits": _limits(limits.get(record["id"])),
+        }
+        for record in source.defects
+    ]
     return sorted(found, key=lambda one: (one["size"]["value"] is None, -(one["size"]["value"] or 0.0), one["id"]))
 
 
-def _finding(record: JsonObject, source: ReportSource, review: Review | None) -> JsonObject:
+def _limits(one: JsonObject | None) -> JsonObject | None:
+    """How it compares with the limits of the shop; None where none were told."""
+    if one is None:
+        return None
+    return {
+        "verdict": one["verdict"],
+        "reason": one["reason"],
+        "text": f"{verdict_text(one['verdict'])}: {one['reason']}",
+    }
+
+
+def verdict_text(verdict: str) -> str:
+    """How something compares with a limit, in words."""
+    return str(verdict).replace("_", " ")
+
+
+def _finding(record: JsonObject, source: ReportSource, review: Review | None, inches: bool) -> JsonObject:
     model = int(record.get("model") or 0)
     visits = [event for event in source.timeline if event["defect_id"] == record["id"]]
     seen = record.get("persistence") or {}
@@ -39,20 +68,20 @@ def _finding(record: JsonObject, source: ReportSource, review: Review | None) ->
         "name": f"D{record['id']}",
         "model": model,
         "label": record["label"],
-        "place": _place(record, model, source.rows.get(model)),
-        "size": _size(record),
-        "width": _measure(record, "width"),
-        "area": _measure(record, "area"),
-        "depth": _measure(record, "depth"),
+        "place": _place(record, model, source.rows.get(model), inches),
+        "size": _size(record, inches),
+        "width": _measure(record, "width", inches),
+        "area": _measure(record, "area", inches),
+        "depth": _measure(record, "depth", inches),
         "confidence": confidence.get("value"),
         "seen": {"frames": seen.get("k"), "could_show": seen.get("n")},
         "times": _times(visits),
-        "human": human_object(review),
+        "human": human_object(review, inches=inches),
         "pictures": finding_pictures(source, record, model),
     }
 
 
-def _place(record: JsonObject, model: int, row: JsonObject | None) -> JsonObject:
+def _place(record: JsonObject, model: int, row: JsonObject | None, inches: bool) -> JsonObject:
     """Where it lies on its blade. The row's own words; every part that is not known says so."""
     told = (row or {}).get("findings") or ()
     known: JsonObject = next((one for one in told if one.get("defect") == record["id"]), {})
@@ -67,8 +96,8 @@ def _place(record: JsonObject, model: int, row: JsonObject | None) -> JsonObject
     scale = _scale_unit(record)
     shares = [_share(place, "span", "of the span seen, from the root"), _share(place, "chord", "of the chord")]
     lengths = [
-        _length(place, "root_distance", "from the root", scale),
-        _length(place, "edge_distance", "from the edge", scale),
+        _length(place, "root_distance", "from the root", scale, inches),
+        _length(place, "edge_distance", "from the edge", scale, inches),
     ]
     place["text"] = "; ".join(
         [blade_text(blade, relative=place["relative"]), _side(place), *shares, *filter(None, lengths)]
@@ -95,35 +124,54 @@ def _share(place: JsonObject, name: str, words: str) -> str:
     return f"{100 * value:.0f}{spread} % {words}"
 
 
-def _length(place: JsonObject, name: str, words: str, unit: str) -> str:
+def _length(place: JsonObject, name: str, words: str, unit: str, inches: bool) -> str:
     value = place[name]
-    return "" if value is None else f"{amount(value, place[f'{name}_sigma'], unit)} {words}"
+    return "" if value is None else f"{amount(value, place[f'{name}_sigma'], unit, inches=inches)} {words}"
 
 
 def _scale_unit(record: JsonObject) -> str:
     return str(record.get("length_unit") or (record.get("extent") or {}).get("unit") or MODEL_UNIT)
 
 
-def _size(record: JsonObject) -> JsonObject:
+def _size(record: JsonObject, inches: bool) -> JsonObject:
     """Its length along the surface, where none was measured its extent."""
     extent = record.get("extent") or {}
     if record.get("length") is not None:
         value, sigma, unit, kind = record["length"], record.get("length_sigma"), _scale_unit(record), "length"
     else:
         value, sigma, unit, kind = extent.get("value"), extent.get("sigma"), extent.get("unit") or MODEL_UNIT, "extent"
-    return {"value": value, "sigma": sigma, "unit": unit, "kind": kind, "text": amount(value, sigma, unit)}
+    return {
+        "value": value,
+        "sigma": sigma,
+        "unit": unit,
+        "kind": kind,
+        "text": amount(value, sigma, unit, inches=inches),
+    }
 
 
-def _measure(record: JsonObject, name: str) -> JsonObject:
+def _measure(record: JsonObject, name: str, inches: bool) -> JsonObject:
     value, sigma, unit = record.get(name), record.get(f"{name}_sigma"), _scale_unit(record)
-    squared = "²" if name == "area" and unit != MODEL_UNIT else ""
-    return {"value": value, "sigma": sigma, "text": amount(value, sigma, unit + squared)}
+    power = 2 if name == "area" else 1
+    return {"value": value, "sigma": sigma, "text": amount(value, sigma, unit, power, inches=inches)}
 
 
-def amount(value: float | None, sigma: float | None, unit: str) -> str:
-    """A measure with its standard deviation and unit; "unscaled" while lengths have none."""
+def amount(value: float | None, sigma: float | None, unit: str, power: int = 1, *, inches: bool = False) -> str:
+    """A measure with its standard deviation and unit; "unscaled" while lengths have none.
+
+    Args:
+        value: in the unit, None = unknown.
+        sigma: the same.
+        unit: of lengths.
+        power: 2 for an area.
+        inches: show it in inches where its unit is mm.
+    """
     if value is None:
         return UNKNOWN
+    if inches and unit == LengthUnit.MM:
+        factor = MM_PER_INCH**-power
+        value, sigma, unit = factor * value, None if sigma is None else factor * sigma, "in"
+    if unit != MODEL_UNIT and power == 2:
+        unit += "²"
     spread = f"± {UNKNOWN}" if sigma is None else f"± {sigma:.2g}"
     return f"{value:.3g} {spread} ({UNSCALED})" if unit == MODEL_UNIT else f"{value:.3g} {spread} {unit}"
 
@@ -144,14 +192,13 @@ def _instant(event: JsonObject, name: str, several: bool) -> str:
     return f"{at} of video {event.get('video') or 0}" if several else at
 
 
-def human_object(review: Review | None) -> JsonObject:
+def human_object(review: Review | None, *, inches: bool = False) -> JsonObject:
     """What people say of a finding, beside what the machine says; None and "not reviewed" where they say nothing."""
     one = review or Review()
     said = one != Review()
     measure = one.measures[-1] if one.measures else None
-    length = (
-        None if measure is None else amount(measure["length"], measure.get("sigma"), measure.get("unit") or MODEL_UNIT)
-    )
+    unit = MODEL_UNIT if measure is None else measure.get("unit") or MODEL_UNIT
+    length = None if measure is None else amount(measure["length"], measure.get("sigma"), unit, inches=inches)
     into = f" into {one.merged_into}" if one.merged_into else ""
     return {
         "state": f"{one.state}{into}" if one.state != ReviewState.OPEN else "open" if said else NOT_REVIEWED,
@@ -167,9 +214,9 @@ def human_object(review: Review | None) -> JsonObject:
     }
 
 
-def added_objects(reviewed: Reviewed) -> list[JsonObject]:
+def added_objects(reviewed: Reviewed, *, inches: bool = False) -> list[JsonObject]:
     """Findings that people made: the machine has none of them."""
-    return [_added(one) for one in reviewed.findings if one.target.kind == TargetKind.ADDED]
+    return [_added(one, inches) for one in reviewed.findings if one.target.kind == TargetKind.ADDED]
 
 
 def unattached_texts(reviewed: Reviewed) -> list[str]:
@@ -177,8 +224,12 @@ def unattached_texts(reviewed: Reviewed) -> list[str]:
     return [_unattached(one.target, one.review) for one in reviewed.unattached]
 
 
-def _added(one: ReviewedFinding) -> JsonObject:
-    return {"name": one.name, "label": one.review.label or one.target.label, "human": human_object(one.review)}
+def _added(one: ReviewedFinding, inches: bool) -> JsonObject:
+    return {
+        "name": one.name,
+        "label": one.review.label or one.target.label,
+        "human": human_object(one.review, inches=inches),
+    }
 
 
 def _unattached(target: Target, review: Review) -> str:

@@ -49,6 +49,8 @@ COLUMNS = (
     "frames_that_could_show_it",
     "first_s",
     "last_s",
+    "limits",
+    "limits_reason",
     "review",
     "human_label",
     "human_blade",
@@ -148,6 +150,8 @@ def _cells(one: JsonObject) -> JsonObject:
         "frames_that_could_show_it": one["seen"]["could_show"],
         "first_s": one["times"]["first_s"],
         "last_s": one["times"]["last_s"],
+        "limits": None if one["limits"] is None else one["limits"]["verdict"],
+        "limits_reason": None if one["limits"] is None else one["limits"]["reason"],
         **_human_cells(one["human"]),
     }
 

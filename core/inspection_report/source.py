@@ -13,6 +13,7 @@ from core.outputs import (
     DEFECTS,
     DETECTIONS,
     DOCUMENT,
+    LIMITS,
     QUALITY,
     ROW,
     SUMMARY,
@@ -40,6 +41,8 @@ class ReportSource:
     """row.json by model; models without one are left out."""
     pages: Mapping[int, JsonObject]
     """viewer.json by model; models without one are left out."""
+    limits: JsonObject | None = None
+    """limits.json; None where no limits of the shop were told."""
 
     @property
     def models(self) -> list[int]:
@@ -87,6 +90,7 @@ def read_source(read: ReadFile) -> ReportSource:
         defects=_list(read, DEFECTS),
         rows=_by_model(read, models, ROW),
         pages=_by_model(read, models, f"{VIEWER}/{DOCUMENT}"),
+        limits=_object(read, LIMITS),
     )
 
 

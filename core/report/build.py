@@ -8,7 +8,8 @@ from pathlib import Path
 
 from core.flags import Verdict
 from core.json_files import write_json
-from core.outputs import DEFECTS, FRAMES, QUALITY, SUMMARY
+from core.outputs import DEFECTS, FRAMES, LIMITS, QUALITY, SUMMARY
+from core.report.limits import limits_document
 from core.report.quality import build_quality, collect_flags, verdict_of
 from core.report.record import Document, Item, Row, RunRecord
 from core.report.rows import case_rows, detection_rows, frame_rows
@@ -32,6 +33,8 @@ class Report:
     detections: Sequence[Row]
     timeline: Sequence[Item]
     defects: Sequence[Item]
+    limits: Document | None = None
+    """The findings compared with the limits of the shop; None where none are told."""
 
 
 def build_report(record: RunRecord) -> Report:
@@ -55,6 +58,7 @@ def build_report(record: RunRecord) -> Report:
         detections=[row.to_dict() for row in detections],
         timeline=[row.to_dict() for row in timeline],
         defects=[row.to_dict() for row in defects],
+        limits=limits_document(record.settings.limits.rows, defects) if record.settings.limits.table else None,
     )
 
 
@@ -74,4 +78,7 @@ def write_tables(report: Report, out_dir: Path) -> list[str]:
         write_json(out_dir / f"{name}.json", list(rows))
         written += [f"{name}.csv", f"{name}.json"]
     write_json(out_dir / DEFECTS, list(report.defects))
+    if report.limits is not None:
+        write_json(out_dir / LIMITS, report.limits)
+        written.append(LIMITS)
     return [*written, DEFECTS]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from core.checks.parallax import cases_parallax
-from core.flags import Flag, FlagFields, Severity, Verdict, error_codes
+from core.flags import Flag, FlagFields, Severity, Verdict, error_codes, in_order, verdict_by
 from core.report.losses import funnel, losses, missing_parts, support_counts
 from core.report.record import Document, Row, RunRecord, TaskRecord
 from core.report.rows import selected_case
@@ -16,8 +15,6 @@ from core.scene.detection import DetectionRow, Outcome
 from core.task_key import key_of, part_of, submodel_of
 from core.thesis.search import refinement_gain, spread, weak_cases
 from core.thesis.tables import thesis_tables
-
-_SEVERITY_RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
 
 def collect_flags(record: RunRecord) -> list[Flag]:
@@ -33,10 +30,8 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     for task in record.tasks:
         submodel = submodel_of(task.key)
         for row in [*_flags_that_count(record, task), *_checks_that_count(record, task)]:
-            flag = Flag.from_dict(row)
-            flags.append(replace(flag, where=f"model {submodel}, {flag.where}") if submodel else flag)
-    unique = {(flag.code, flag.where): flag for flag in reversed(flags)}
-    return sorted(unique.values(), key=lambda flag: (_SEVERITY_RANK[flag.severity], flag.code, flag.where))
+            flags.append(Flag.from_dict(row).of_model(submodel))
+    return in_order(flags)
 
 
 def _start_of_lens(record: RunRecord) -> str:
@@ -90,7 +85,7 @@ def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
     """`refused` without a model to trust, `suspect` with any warning or error, else `ok`."""
     if record.reason == "no_reconstruction" or not record.facts("extend"):
         return Verdict.REFUSED
-    return Verdict.SUSPECT if any(flag.severity != Severity.INFO for flag in flags) else Verdict.OK
+    return verdict_by(flags)
 
 
 def build_quality(

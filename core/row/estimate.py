@@ -13,6 +13,7 @@ from core.row.coverage import coverage_of, in_order, sightings
 from core.row.fit import best_contrast, refined
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast, overlap, sides
+from core.row.regular import MAX_OFF_PITCHES, worst_pair
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.section import section_of
 from core.row.seeds import seeds
@@ -38,8 +39,6 @@ MIN_SIGMA_SHARE = 0.03
 """Of the pitch: radius and pitch trade, so what the blades agree on among themselves says too little.
 
 On a draft surface of the sample, whose true pitch is 5.625 degrees, two draws of the points gave 5.83 and 5.95."""
-MAX_PITCH_SPREAD = 0.08
-"""Of the pitch: farther from the common pitch no two neighbours may lie."""
 LEAST_BLADES = 3
 UNTOLD = RowSettings()
 LEAST_VIEWS = 3
@@ -119,15 +118,16 @@ def refused(fine: SurfaceSample, row: Hypothesis) -> NoRow | None:
     )
     if value < MIN_SHARE_KEPT * float(one + second) / 2:
         return NoRow(UnknownRow.NO_REPETITION, value)
-    if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):
-        return NoRow(UnknownRow.TOO_FEW_BLADES, value)
     sheet = fit_sheet(fine, row)
     blades = seen_blades(sheet, fine)
     if len(blades) < LEAST_BLADES:
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)
-    spread = np.abs(_deviations(sheet, fine, blades))
-    if spread.max() > MAX_PITCH_SPREAD:
-        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value)
+    pair = worst_pair(sheet, fine)
+    if pair is not None and pair.off_pitches > MAX_OFF_PITCHES:
+        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value, pair)
+    # After that: blades half a pitch off fill the troughs.
+    if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):
+        return NoRow(UnknownRow.TOO_FEW_BLADES, value)
     return None
 
 

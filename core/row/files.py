@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from core.json_files import JsonObject, read_json, write_json
 from core.row.blades import Sheet
 from core.row.model import BladeRow, Coverage, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis
+from core.row.regular import Irregularity
 from core.row.section import Edge, Section
 from core.row.turn import Axis
 from core.scene.on_row import Side
@@ -42,11 +44,14 @@ def read_blades(folder: Path) -> BladeRow | NoRow:
 
 
 def _unknown(row: NoRow) -> JsonObject:
-    return {"reason": str(row.reason), "contrast": row.contrast}
+    irregular = None if row.irregular is None else asdict(row.irregular)
+    return {"reason": str(row.reason), "contrast": row.contrast, "irregular": irregular}
 
 
 def _no_row(values: JsonObject) -> NoRow:
-    return NoRow(UnknownRow(values["reason"]), values["contrast"])
+    pair = values["irregular"]
+    irregular = None if pair is None else Irregularity(**{**pair, "blades": tuple(pair["blades"])})
+    return NoRow(UnknownRow(values["reason"]), values["contrast"], irregular)
 
 
 def _axis(axis: Axis) -> JsonObject:

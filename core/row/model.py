@@ -9,8 +9,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from core.flags import Flag, Severity
 from core.json_files import JsonObject
 from core.row.blades import Sheet
+from core.row.regular import MAX_OFF_PITCHES, Irregularity
 from core.row.section import Section
 from core.row.turn import Axis
 
@@ -46,7 +48,7 @@ UNKNOWN_ROW: Mapping[UnknownRow, str] = {
     UnknownRow.NO_REPETITION: "no turn lays the surface onto itself: one blade, a hub, or no row",
     UnknownRow.TOO_FEW_BLADES: "the surface shows fewer than three equal blades",
     UnknownRow.NOT_COMPUTED: "the search for the row did not come to its end",
-    UnknownRow.PITCH_NOT_CONSTANT: "the angle from blade to blade is not constant: no row, or a wrong model",
+    UnknownRow.PITCH_NOT_CONSTANT: "the angle from blade to blade is not constant: a bent or wrongly joined model",
 }
 """What each reason means, for people."""
 
@@ -177,6 +179,16 @@ class NoRow:
     reason: UnknownRow
     contrast: float | None = None
     """The best that was found, where it was asked for."""
+    irregular: Irregularity | None = None
+    """The two blades that speak against a row, where its pitch is not constant."""
+
+    @property
+    def flags(self) -> list[Flag]:
+        """What a reader of the result must know: a surface that ought to be a row, and is none."""
+        if self.irregular is None:
+            return []
+        off, where = self.irregular.off_pitches, self.irregular.where
+        return [Flag("row_irregular", Severity.WARNING, off, MAX_OFF_PITCHES, where)]
 
     def to_dict(self) -> JsonObject:
         """JSON form."""
@@ -185,7 +197,10 @@ class NoRow:
             "status": str(RowStatus.UNKNOWN),
             "reason": str(self.reason),
             "reason_text": UNKNOWN_ROW[self.reason],
-            "evidence": {"contrast": None if self.contrast is None else round(self.contrast, 4)},
+            "evidence": {
+                "contrast": None if self.contrast is None else round(self.contrast, 4),
+                **({} if self.irregular is None else {"off_pitches": round(self.irregular.off_pitches, 4)}),
+            },
         }
 
 

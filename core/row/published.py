@@ -5,19 +5,23 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import BadInput
+from core.flags import Flag, Verdict, in_order, verdict_by
 from core.io.sparse import open_model
 from core.json_files import JsonObject, read_json, replace_file, write_json
 from core.mapping.scene import oriented
 from core.outputs import (
     CONFIDENCE,
+    DEFECT_GLB,
     DEFECT_SURFACE,
     DEFECTS,
     DETECTIONS,
+    LIMITS,
+    QUALITY,
     ROW,
     ROW_MAP,
     SPARSE,
@@ -27,18 +31,22 @@ from core.outputs import (
     model_folder,
     model_numbers,
 )
+from core.report.limits import limits_document, limits_of
 from core.report.tables import write_csv
 from core.row.estimate import UNTOLD, estimate_row
 from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.places import blades_of_vertices
-from core.row.tables import RowOfModel, events_on_row
+from core.row.rescaled import MEASURED, ChangeOfScale, changed_scale, scale_of_model
+from core.row.tables import RowOfModel, events_on_row, scale_of_row
 from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import DetectionRow
 from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS
-from core.scene.size import Scale
+from core.scene.size import Scale, scale_fields
 from core.scene.views import views_of
+from core.settings.limits import Limit
 from core.settings.row import RowSettings
+from core.surface.colored_glb import write_glb
 from core.surface.ply import read_mesh, write_mesh
 
 SEED = 0
@@ -48,55 +56,81 @@ Rows = list[JsonObject]
 """Objects of a published JSON table; older releases have fewer members, and those that are not known stay."""
 
 
-def write_row(folder: Path, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
+def write_row(folder: Path, told: RowSettings = UNTOLD, limits: Sequence[Limit] | None = None) -> BladeRow | NoRow:
     """Find the row of every model of a result, and write ``row.json`` and the columns of the row.
 
     Every file is replaced at once, ``row.json`` last. Nothing else of the tables changes, and no defect's id. The
-    coloured surface gets the vertex property `blade`.
+    coloured surface gets the vertex property `blade`. A radius that is told gives a scale: then lengths and areas of
+    the tables are in mm, and the GLB is in metres. Without one, the scale that the result has stays.
 
     Args:
         folder: of a published result.
         told: what the user knows of the row.
+        limits: of the shop; None = those that the result was compared with, if any.
 
     Returns:
         The row of the first model.
 
     Raises:
-        BadInput: the folder is no result.
+        BadInput: the folder is no result, or its scale cannot be told from a radius that is in it already.
     """
     if not (folder / SUMMARY).is_file():
         raise BadInput(f"{folder.name} is no result: it has no {SUMMARY}", where=str(folder))
-    if told.radius_mm is not None:
-        detail = "a radius changes every size: run the inspection again with it, which computes what depends on it"
-        raise BadInput(detail, where="row.radius_mm")
-    scale = Scale.from_dict(read_json(folder / SUMMARY).get("scale") or {})
     rows, records, events = _read(folder / DETECTIONS), _read(folder / DEFECTS), _read(folder / TIMELINE)
     detections = [DetectionRow.from_dict(row) for row in rows]
     defects = [DefectRecord.from_dict(record) for record in records]
     documents: dict[int, JsonObject] = {}
     found: dict[int, BladeRow | NoRow] = {}
+    flags: dict[int, Sequence[Flag]] = {}
     for number in model_numbers(folder):
-        where = _row_of(model_folder(folder, number), number, scale, told)
-        own = [one for one in defects if one.model == number]
+        below = model_folder(folder, number)
+        where, change = _row_of(below, number, told, scale_of_model(folder, number))
+        own = [change.record(one) for one in defects if one.model == number]
+        detections = [change.detection(row) if row.model == number else row for row in detections]
         findings: Rows = []
         if isinstance(where, RowOfModel):
-            detections = where.detections(detections, _sigmas(model_folder(folder, number) / CONFIDENCE))
+            detections = where.detections(detections, _sigmas(below / CONFIDENCE))
             own, findings = where.records(own)
         else:
             detections = [_without(row) if row.model == number else row for row in detections]
             own = [replace(record, blade=None, on_row=NOT_ON_A_ROW) for record in own]
         defects = [next((new for new in own if new.id == old.id), old) for old in defects]
         found[number] = where.row if isinstance(where, RowOfModel) else where
-        documents[number] = {**found[number].to_dict(), "findings": findings}
-    _write(folder / DETECTIONS, _changed(rows, detections))
+        flags[number] = [*change.flags, *(where.flags if isinstance(where, NoRow) else ())]
+        documents[number] = {**found[number].to_dict(), "findings": findings, "scale": scale_fields(change.new)}
+    names = (*_WRITTEN, *MEASURED)
+    _write(folder / DETECTIONS, _changed(rows, detections, names))
     visits = [EventRow.from_dict(event) for event in events]
     _write(folder / TIMELINE, _changed(events, events_on_row(visits, defects), ("blade",)))
     if records:
-        changed = _changed(records, defects)
+        changed = _changed(records, defects, (*names, "size_sigma"))
         replace_file(folder / DEFECTS, lambda path: write_json(path, changed))
+    _write_scale(folder, documents[0]["scale"])
+    _compare(folder, limits, defects)
+    _flag(folder, flags, told.radius_mm is not None)
     for number in sorted(found, reverse=True):
         _write_row(model_folder(folder, number), documents[number])
     return found[0]
+
+
+def _flag(folder: Path, flags: Mapping[int, Sequence[Flag]], scaled: bool = False) -> None:
+    """Put the flags of the row, and of a new scale, in place of the old ones, and the verdict where it changes."""
+    if not (folder / QUALITY).is_file():
+        return
+    quality: JsonObject = read_json(folder / QUALITY)
+    replaced = ("row_irregular", "scale_disagrees") if scaled else ("row_irregular",)
+    kept = [flag for flag in quality["flags"] if flag["code"] not in replaced]
+    new = [flag.of_model(number) for number in sorted(flags) for flag in flags[number]]
+    if not new and kept == quality["flags"]:
+        return
+    flags_now = in_order([*(Flag.from_dict(flag) for flag in kept), *new])
+    shown = [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags_now]
+    verdict = Verdict(quality["verdict"])
+    if verdict != Verdict.REFUSED:
+        verdict = verdict_by(flags_now)
+    replace_file(folder / QUALITY, lambda path: write_json(path, {**quality, "verdict": verdict, "flags": shown}))
+    summary = read_json(folder / SUMMARY)
+    replace_file(folder / SUMMARY, lambda path: write_json(path, {**summary, "verdict": verdict}))
 
 
 def _write_row(folder: Path, document: JsonObject) -> None:
@@ -104,22 +138,43 @@ def _write_row(folder: Path, document: JsonObject) -> None:
     replace_file(folder / ROW, lambda path: write_json(path, document))
 
 
-def _row_of(folder: Path, model: int, scale: Scale | None, told: RowSettings) -> RowOfModel | NoRow:
-    """The row of one model of a result, by the files below its folder; writes the blades of its coloured surface."""
+def _write_scale(folder: Path, scale: JsonObject) -> None:
+    """Put the scale of the first model into the summary, where it is another one."""
+    summary = read_json(folder / SUMMARY)
+    if Scale.from_dict(summary.get("scale") or {}) != Scale.from_dict(scale):
+        replace_file(folder / SUMMARY, lambda path: write_json(path, {**summary, "scale": scale}))
+
+
+def _compare(folder: Path, limits: Sequence[Limit] | None, defects: Sequence[DefectRecord]) -> None:
+    """Write the comparison with the limits of the shop, those told or else those that the result has."""
+    path = folder / LIMITS
+    if limits is None and path.is_file():
+        limits = limits_of(read_json(path))
+    if limits is not None:
+        compared = limits_document(limits, defects)
+        replace_file(path, lambda beside: write_json(beside, compared))
+
+
+def _row_of(folder: Path, model: int, told: RowSettings, old: Scale | None) -> tuple[RowOfModel | NoRow, ChangeOfScale]:
+    """The row of one model of a result, by the files below its folder, and its scale before and now.
+
+    Writes the blades of its coloured surface, and the GLB of that.
+    """
+    same = ChangeOfScale(old, old)
     if not (folder / SURFACE).is_file() or not (folder / SPARSE).is_dir():
-        return NoRow(UnknownRow.NO_SURFACE)
+        return NoRow(UnknownRow.NO_SURFACE), same
     views = views_of(open_model(folder / SPARSE))
     mesh = oriented(read_mesh(folder / SURFACE), views)
     row = estimate_row(mesh, views, SEED, told)
     if isinstance(row, NoRow):
-        return row
+        return row, same
+    change = changed_scale(old, scale_of_row(row, told))
     if (folder / DEFECT_SURFACE).is_file():
         colored = read_mesh(folder / DEFECT_SURFACE)
-        extra = {**colored.extra, "blade": blades_of_vertices(row, colored)}
-        replace_file(
-            folder / DEFECT_SURFACE, lambda path: write_mesh(path, replace(colored, extra=extra), colored.comments)
-        )
-    return RowOfModel(row, mesh, views, model, scale)
+        on_row = replace(colored, extra={**colored.extra, "blade": blades_of_vertices(row, colored)})
+        replace_file(folder / DEFECT_SURFACE, lambda path: write_mesh(path, on_row, colored.comments))
+        replace_file(folder / DEFECT_GLB, lambda path: write_glb(path, on_row, change.new))
+    return RowOfModel(row, mesh, views, model, change.new), change
 
 
 def _without(row: DetectionRow) -> DetectionRow:
@@ -134,12 +189,13 @@ def _sigmas(path: Path) -> dict[int, float | None]:
 def _changed(
     rows: Rows, typed: Iterable[DetectionRow | DefectRecord | EventRow], names: tuple[str, ...] = _WRITTEN
 ) -> Rows:
-    """The objects with the columns of the row, and the unit of these where they have none."""
+    """The objects with the columns of the row and those others of `names` that they have, and the unit of lengths."""
     changed = []
     for row, new in zip(rows, typed, strict=True):
         values: Mapping[str, object] = new.to_dict()
         unit = {"length_unit": values["length_unit"]} if values.get("root_distance") is not None else {}
-        changed.append({**row, **{name: values[name] for name in names}, **unit})
+        kept = {name: values[name] for name in names if name in values and (name in row or name in _WRITTEN)}
+        changed.append({**row, **kept, **unit})
     return changed
 
 

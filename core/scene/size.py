@@ -101,6 +101,11 @@ class Measure:
         value, outline, pose, surface = parts
         return Measure(value, outline, pose, surface, power * scale.share * value)
 
+    def unscaled(self, scale: Scale, power: int) -> Measure:
+        """In units of the model, from mm (power 1) or mm² (power 2)."""
+        factor = scale.value**-power
+        return Measure(factor * self.value, factor * self.outline, factor * self.pose, factor * self.surface)
+
     def parts(self) -> dict[str, float]:
         """The standard deviations by their source."""
         return {name: value for name, value in asdict(self).items() if name != "value"}
@@ -153,6 +158,16 @@ class Size:
         )
         area = None if self.area is None else self.area.scaled(scale, 2)
         return Size(length, width, area, depth, LengthUnit.MM, self.size_from, self.reason)
+
+    def unscaled(self, scale: Scale | None) -> Size:
+        """The same in units of the model, from mm by the scale that made them; unchanged where it is not in mm."""
+        if scale is None or self.unit != LengthUnit.MM:
+            return self
+        length, width, depth = (
+            None if one is None else one.unscaled(scale, 1) for one in (self.length, self.width, self.depth)
+        )
+        area = None if self.area is None else self.area.unscaled(scale, 2)
+        return Size(length, width, area, depth, LengthUnit.MODEL, self.size_from, self.reason)
 
     @property
     def measures(self) -> Mapping[str, Measure]:

@@ -12,6 +12,7 @@ from core.errors import BadInput
 from core.names import nearest
 from core.settings import groups, reading
 from core.settings.base import Group, option
+from core.settings.limits import LimitSettings
 from core.settings.row import RowSettings
 from core.settings.scale import ScaleSettings
 
@@ -42,6 +43,7 @@ class Settings(Group):
     timeline: groups.TimelineSettings = groups.TimelineSettings()
     row: RowSettings = RowSettings()
     scale: ScaleSettings = ScaleSettings()
+    limits: LimitSettings = LimitSettings()
     gallery: groups.GallerySettings = groups.GallerySettings()
     compute: groups.ComputeSettings = groups.ComputeSettings()
     overrides: tuple[str, ...] = option((), "names that the user set, sorted", source="the run")

@@ -15,13 +15,13 @@ from core.surface.ply import read_mesh
 
 
 def run(task: StageTask) -> StageResult:
-    """Write ``blades.json``. Facts: n_blades, and where there are none the reason."""
+    """Write ``blades.json``. Facts: n_blades, and where there are none the reason and flags."""
     found = read_found(task.input("row"))
     row = found if isinstance(found, NoRow) else _described(task, found)
     write_blades(task.out, row)
     if isinstance(row, NoRow):
-        return StageResult({"n_blades": 0, "reason": str(row.reason)})
-    return StageResult({"n_blades": len(row.numbers), "reason": None})
+        return StageResult({"n_blades": 0, "reason": str(row.reason), "flags": [flag.to_dict() for flag in row.flags]})
+    return StageResult({"n_blades": len(row.numbers), "reason": None, "flags": []})
 
 
 def _described(task: StageTask, found: Hypothesis) -> BladeRow | NoRow:

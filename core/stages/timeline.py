@@ -20,16 +20,15 @@ from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.places import blades_of_vertices
 from core.row.tables import RowOfModel, events_on_row, scale_of_row
 from core.scene.methods import Grouped, Grouping
+from core.scene.size import scale_fields
 from core.scene.views import Views, views_of
 from core.stage import StageResult, StageTask
 from core.stages.map_defects import open_scene_of, world_comments
-from core.surface.glb import write_glb
+from core.surface.colored_glb import write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.task_key import key_of
 from core.thesis.grouping import ThesisGrouping
 from core.timeline.grouping import Start, SurfaceGrouping
-
-MM_PER_M = 1000.0
 
 
 def run(task: StageTask) -> StageResult:
@@ -47,7 +46,7 @@ def run(task: StageTask) -> StageResult:
         task.report(3, 4, "finding the blades of the defects")
         found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.submodel, found.scale))
         extra["blade"] = blades_of_vertices(row, mesh)
-    document = {**row.to_dict(), "findings": findings}
+    document = {**row.to_dict(), "findings": findings, "scale": scale_fields(found.scale)}
     write_json(task.out / ROW, document)
     (task.out / ROW_MAP).write_text(row_map(document), encoding="utf-8")
     write_timeline(task.out, found.events, found.defects, found.confidences)
@@ -55,11 +54,7 @@ def run(task: StageTask) -> StageResult:
     task.report(3, 4, "writing the coloured surface")
     colored = replace(mesh, colors=blend(mesh.colors, found.weight), extra=extra)
     write_mesh(defect_mesh(task.out), colored, world_comments(task))
-    if found.scale is None:
-        write_glb(defect_glb(task.out), colored)
-    else:  # glTF's lengths are metres
-        in_metres = replace(colored, vertices=colored.vertices * (found.scale.value / MM_PER_M))
-        write_glb(defect_glb(task.out), in_metres, "m")
+    write_glb(defect_glb(task.out), colored, found.scale)
     write_cameras(task.out, views)
     task.report(4, 4, "timeline written")
     return StageResult(dict(found.facts))

@@ -1,4 +1,4 @@
-"""Coloured meshes as binary glTF 2.0, with support and defect numbers as vertex attributes."""
+"""What every binary glTF 2.0 that is written here shares: its buffer, container, colours and normals."""
 
 from __future__ import annotations
 
@@ -11,39 +11,11 @@ from numpy.typing import NDArray
 
 from core.surface.ply import Mesh, Values
 
-GLTF_FROM_WORLD = np.diag([1.0, -1.0, -1.0])
-"""glTF is y-up and looks along -z; COLMAP's camera frames, and so its worlds, are y-down and look along +z."""
-
 BYTE, UBYTE, USHORT, UINT, FLOAT = 5120, 5121, 5123, 5125, 5126
 """Types of components of an accessor (glTF 2.0, 3.6.2.2)."""
 ARRAY_BUFFER, INDEX_BUFFER = 34962, 34963
 """Targets of a view of the buffer."""
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
-
-
-def write_glb(path: Path, mesh: Mesh, unit: str = "model") -> None:
-    """Write a mesh as GLB: y-up positions, normals, COLOR_0, `_SUPPORT` and `_DEFECT_ID` where the mesh has them.
-
-    Vertex colours are sRGB in the mesh and linear in glTF; they are stored with 16 bits so that dark tones
-    keep their steps. Numbers of defects are floats, because glTF knows no 32-bit integer attribute.
-    """
-    buffer = GlbBuffer()
-    attributes: dict[str, int] = {}
-    positions = (mesh.vertices @ GLTF_FROM_WORLD.T).astype("<f4")
-    attributes["POSITION"] = buffer.add(positions, FLOAT, "VEC3", ARRAY_BUFFER, bounds=True)
-    normals = vertex_normals(mesh) if mesh.normals is None else mesh.normals
-    attributes["NORMAL"] = buffer.add(
-        (unit_rows(normals) @ GLTF_FROM_WORLD.T).astype("<f4"), FLOAT, "VEC3", ARRAY_BUFFER
-    )
-    if mesh.colors is not None:
-        attributes["COLOR_0"] = buffer.add(linear_rgba(mesh.colors), USHORT, "VEC4", ARRAY_BUFFER, normalized=True)
-    for name in ("support", "defect_id"):
-        if name in mesh.extra:
-            values = mesh.extra[name].astype("<f4")
-            attributes[f"_{name.upper()}"] = buffer.add(values, FLOAT, "SCALAR", ARRAY_BUFFER)
-    indices = buffer.add(mesh.faces.astype("<u4").ravel(), UINT, "SCALAR", INDEX_BUFFER)
-    document = _document(buffer, attributes, indices, unit)
-    write_document(path, document, bytes(buffer.data))
 
 
 def vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
@@ -121,26 +93,6 @@ class GlbBuffer:
         """An accessor of so many zeros, which take no byte, and its index."""
         self.accessors.append({"componentType": component, "count": count, "type": kind})
         return len(self.accessors) - 1
-
-
-def _document(buffer: GlbBuffer, attributes: dict[str, int], indices: int, unit: str) -> dict[str, object]:
-    return {
-        "asset": {
-            "version": "2.0",
-            "generator": "BladeAtlas",
-            "extras": {"unit": unit, "gltf_from_world": GLTF_FROM_WORLD.tolist()},
-        },
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0, "name": "surface with defects"}],
-        "meshes": [{"primitives": [{"attributes": attributes, "indices": indices, "material": 0, "mode": 4}]}],
-        "materials": [
-            {"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.85}},
-        ],
-        "accessors": buffer.accessors,
-        "bufferViews": buffer.views,
-        "buffers": [{"byteLength": len(buffer.data)}],
-    }
 
 
 def write_document(path: Path, document: dict[str, object], binary: bytes) -> None:

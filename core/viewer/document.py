@@ -84,9 +84,10 @@ def viewer_document(source: ViewerSource) -> JsonObject:
     report, scene = source.report, source.shown_scene
     frame = report.summary.get("frame") or {}
     size = _size(source, frame)
-    scale = report.summary.get("scale") or {}
+    scale = _scale(source)
     own = [record for record in report.defects if int(record.get("model") or 0) == source.model]
     ids = {record["id"] for record in own}
+    limits = {one["defect"]: one for one in (report.limits or {}).get("findings", ())}
     return {
         "schema_version": SCHEMA_VERSION,
         "title": report.summary.get("label") or report.summary.get("external_id") or "Inspection",
@@ -97,6 +98,7 @@ def viewer_document(source: ViewerSource) -> JsonObject:
             "unit": scale.get("unit") or MODEL_UNIT,
             "scale": scale.get("value"),
             "findings": _in_all(report),
+            "scale_sigma": scale.get("sigma"),
         },
         "models": [
             {"index": other, "href": page_of(other, source.model)} for other in source.models if other != source.model
@@ -106,7 +108,7 @@ def viewer_document(source: ViewerSource) -> JsonObject:
         "frames": [_frame(row, source) for row in report.frames],
         "sprite": _sprite(source),
         "detections": [_detection(row, source, size) for row in report.detections],
-        "defects": [_defect(record, scene) for record in own],
+        "defects": [_defect(record, scene, limits.get(record["id"])) for record in own],
         "events": [event for event in report.timeline if event["defect_id"] in ids],
         "row": source.row or UNKNOWN_ROW,
         "verdict": report.verdict,
@@ -125,6 +127,13 @@ def _in_all(report: Report) -> list[int] | None:
     """At least and at most how many findings all models hold; None where one model holds all that there are."""
     least = least_defects(int(record.get("model") or 0) for record in report.defects)
     return None if least == len(report.defects) else [least, len(report.defects)]
+
+
+def _scale(source: ViewerSource) -> JsonObject:
+    """The scale of the model: by its row.json; that of the summary is the first model's alone."""
+    of_run: JsonObject = source.report.summary.get("scale") or {}
+    own: JsonObject | None = (source.row or {}).get("scale")
+    return own if own is not None else of_run if source.model == 0 else {}
 
 
 def _frame_words() -> dict[str, str]:
@@ -222,7 +231,7 @@ def _detection(row: Item, source: ViewerSource, size: tuple[float, float]) -> Js
     }
 
 
-def _defect(record: Item, scene: ViewerScene | None) -> JsonObject:
+def _defect(record: Item, scene: ViewerScene | None, limits: JsonObject | None) -> JsonObject:
     extent = record.get("extent") or {}
     views = record.get("frames") or ()
     best = next((view for view in views if view.get("detected")), next(iter(views), None))
@@ -234,6 +243,7 @@ def _defect(record: Item, scene: ViewerScene | None) -> JsonObject:
         "best_frames": best_frames(DefectRecord.from_dict(dict(record))),
         "best": at,
         **_measured(record, extent),
+        **({} if limits is None else {"limits": {"verdict": limits["verdict"], "reason": limits["reason"]}}),
     }
 
 

@@ -10,6 +10,7 @@ import open3d as o3d
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.surface.cut import by_blade, cut, rows_of
 from core.surface.glb import vertex_normals
 from core.surface.ply import Mesh
 
@@ -30,7 +31,7 @@ def part_name(defect: int) -> str:
 
 
 SURFACE = "surface"
-"""Name of the node of everything else."""
+"""Name of the node of everything else; what of it lies on blade N is the node ``blade_N``."""
 
 
 def viewer_parts(mesh: Mesh, defects: Mapping[int, Sequence[int]], max_faces: int = MAX_FACES) -> dict[str, Mesh]:
@@ -42,8 +43,8 @@ def viewer_parts(mesh: Mesh, defects: Mapping[int, Sequence[int]], max_faces: in
         max_faces: triangles of all parts together, at most.
 
     Returns:
-        Parts by the names of their nodes, `SURFACE` first; each has normals, and the colours and properties of the
-        mesh. A defect without faces of its own has no part.
+        Parts by the names of their nodes, `SURFACE` and the blades first; each has normals, and the colours and
+        properties of the mesh. A defect without faces of its own has no part.
     """
     whole = replace(mesh, normals=vertex_normals(mesh))
     owner = np.full(len(mesh.faces), -1, np.int64)
@@ -53,7 +54,7 @@ def viewer_parts(mesh: Mesh, defects: Mapping[int, Sequence[int]], max_faces: in
     patches = _within(patches, int(PATCH_SHARE * max_faces))
     left = max_faces - sum(len(patch.faces) for patch in patches.values())
     rest = _decimated(cut(whole, owner < 0), left)
-    return {SURFACE: rest, **{part_name(number): patch for number, patch in patches.items()}}
+    return {**by_blade(rest, SURFACE), **{part_name(number): patch for number, patch in patches.items()}}
 
 
 def _within(patches: Mapping[int, Mesh], budget: int) -> dict[int, Mesh]:
@@ -62,23 +63,6 @@ def _within(patches: Mapping[int, Mesh], budget: int) -> dict[int, Mesh]:
     if total <= budget:
         return dict(patches)
     return {number: _decimated(patch, len(patch.faces) * budget // total) for number, patch in patches.items()}
-
-
-def cut(mesh: Mesh, faces: Flags | NDArray[np.intp]) -> Mesh:
-    """Some faces of a mesh, by flags or in the order of their numbers, with the vertices that they use."""
-    chosen = mesh.faces[faces]
-    used, flat = np.unique(chosen, return_inverse=True)
-    return _rows(mesh, used, flat.reshape(-1, 3).astype(np.int32))
-
-
-def _rows(mesh: Mesh, rows: NDArray[np.signedinteger], faces: NDArray[np.int32]) -> Mesh:
-    return Mesh(
-        mesh.vertices[rows],
-        faces,
-        None if mesh.colors is None else mesh.colors[rows],
-        None if mesh.normals is None else mesh.normals[rows],
-        {name: values[rows] for name, values in mesh.extra.items()},
-    )
 
 
 def _decimated(mesh: Mesh, max_faces: int) -> Mesh:
@@ -94,6 +78,6 @@ def _decimated(mesh: Mesh, max_faces: int) -> Mesh:
     thin = full.simplify_quadric_decimation(max_faces, boundary_weight=_BOUNDARY)
     vertices, faces = np.asarray(thin.vertices), np.asarray(thin.triangles, np.int32)
     _, nearest = cKDTree(mesh.vertices, balanced_tree=False, compact_nodes=False).query(vertices)
-    likened = _rows(mesh, np.asarray(nearest, np.int64), faces)
+    likened = rows_of(mesh, np.asarray(nearest, np.int64), faces)
     moved = replace(likened, vertices=vertices)
     return replace(moved, normals=vertex_normals(moved))

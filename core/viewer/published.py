@@ -19,6 +19,7 @@ from core.outputs import (
     DEFECTS,
     DETECTIONS,
     FRAMES,
+    LIMITS,
     QUALITY,
     ROW,
     SPARSE,
@@ -112,7 +113,8 @@ def _report(folder: Path) -> Report:
         frames = [_frame_row(row) for row in read_csv(folder / FRAMES)]
     except (OSError, ValueError, KeyError) as error:
         raise BadInput(f"a table of {folder.name} cannot be read: {error}", where=folder.name) from None
-    return Report(Verdict(quality["verdict"]), summary, quality, frames, (), *tables)
+    limits = _object(folder / LIMITS)
+    return Report(Verdict(quality["verdict"]), summary, quality, frames, (), *tables, limits=limits)
 
 
 def _frame_row(row: dict[str, str]) -> dict[str, str | int | float | None]:

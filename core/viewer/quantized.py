@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from core.surface.cut import cut
 from core.surface.glb import (
     ARRAY_BUFFER,
     BYTE,
@@ -25,7 +26,6 @@ from core.surface.glb import (
     write_document,
 )
 from core.surface.ply import Mesh
-from core.viewer.parts import cut
 
 _EXTENSION = "KHR_mesh_quantization"
 _STEPS = 65535

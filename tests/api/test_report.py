@@ -52,6 +52,17 @@ def test_every_form_tells_the_same(client: TestClient, one: str) -> None:
     assert [row["finding"] for row in rows] == ["D0", "D1", "D2", "D10"]
 
 
+def test_texts_are_in_inches_where_these_are_asked_for(backend: Backend, client: TestClient) -> None:
+    folder = RESULTS / "two_models"
+    scale = {"unit": "mm", "value": 2.54, "sigma": 0.254, "source": "points"}
+    files = {name: (folder / name).read_bytes() for name in ("summary.json", "quality.json")}
+    files["summary.json"] = json.dumps({**json.loads(files["summary.json"]), "scale": scale}).encode()
+    report = f"/v1/inspections/{backend.finished('one', files)}/report.json"
+    texts = [client.get(report, params=asked).json()["scale"]["text"] for asked in ({}, {"units": "in"})]
+    assert [text.split(" in a unit")[0] for text in texts] == ["Scale: 2.54 ± 0.25 mm", "Scale: 0.1 ± 0.01 in"]
+    assert client.get(report, params={"units": "cm"}).status_code == 422
+
+
 def test_the_day_is_that_on_which_it_ended_or_the_one_asked_for(client: TestClient, one: str) -> None:
     ended = client.get(one).json()["ended_at"][:10]
     assert client.get(f"{one}/report.json").json()["review"] == {

@@ -42,10 +42,18 @@ def test_null_takes_back_and_what_is_not_named_stays(backend: Backend, client: T
     assert answer.json()["parameters"]["options"] == {"row.count": 64, "row.direction": "reversed"}
 
 
+def test_limits_of_the_shop_are_told_alike(backend: Backend, client: TestClient) -> None:
+    one = over(backend, {"row.count": 64})
+    answer = told(client, one, {"limits": "length_mm\n2\n"})
+    assert answer.status_code == 202, answer.text
+    assert answer.json()["parameters"]["options"] == {"row.count": 64, "limits.table": "length_mm\n2\n"}
+
+
 @pytest.mark.parametrize(
     "body",
     [
         {},
+        {"limits": "length_mm\nmany\n"},
         {"count": 3},
         {"blades": 64},
         {"zero_blade": 2},

@@ -60,3 +60,23 @@ def test_a_link_that_leads_out_of_the_result_is_no_file_of_it(tmp_path: Path) ->
     read = files_below(tmp_path / "result")
     assert read("link") is None
     assert read("../secret") is None
+
+
+def test_limits_are_read_from_a_file_or_refused_with_the_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "limits.csv"
+    table.write_text("damage,count\ndent,5\n")
+    words = ["report", RESULT, "--out", str(tmp_path), "--form", "json", "--units", "in", "--limits", str(table)]
+    assert main(words) == 0
+    document = json.loads((tmp_path / "report.json").read_text())
+    assert document["limits"]["rows"] == [{"line": 2, "text": "dent, anywhere: at most 5 on a blade"}]
+    assert not (RESULTS / "two_models" / "limits.json").exists(), "the result stays as it is"
+    capsys.readouterr()
+    for command in (words, ["row", RESULT, "--limits", str(table)]):
+        table.write_text("damage,count\ndent,few\n")
+        assert main(command) == 2
+        assert "line 2 of the table of limits: count is 'few'" in capsys.readouterr().err
+    table.write_bytes(b"\xff\xfe")
+    assert main(words) == 2
+    assert "no text in UTF-8" in capsys.readouterr().err

@@ -111,7 +111,8 @@ def mesh_of_plates() -> Mesh:
     grey = np.where(z < 5, 150 + 60 * tile, 60 + 50 * tile)
     support = np.where(x > 3, 0.1, np.where(x > 2.4, 0.4, 1.0)).astype(np.float32)
     colors = np.repeat(grey[:, None], 3, axis=1).astype(np.uint8)
-    return Mesh(mesh.vertices, mesh.faces, colors, extra={"defect_id": defect, "support": support})
+    blade = np.where(z < 5, 1, 2).astype(np.int32)  # the plates stand for two blades: each is a node of the GLB
+    return Mesh(mesh.vertices, mesh.faces, colors, extra={"defect_id": defect, "support": support, "blade": blade})
 
 
 def records_of(mesh: Mesh) -> list[DefectRecord]:

@@ -3,7 +3,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import type { Finding, Vec3 } from "./model/data";
 import { fold, lastStanding, newId, readRecords, targetOf, type Action, type Addition, type Review, type Reviewed, type ReviewRecord, type Target, type Value } from "./model/review";
-import { findingName } from "./model/words";
+import { findingName, scaled } from "./model/words";
 import { all, author, fromService, hand, mayReview, start } from "./server";
 import { data, detections, keeps, questions, size, surface } from "./session";
 import { allFindings, announcement, drawing, finding, findingOf, frame, made, measured, place, reviewState, selectFinding, stepFinding } from "./state";
@@ -137,10 +137,11 @@ function cast(at: number, [x0, y0, x1, y1]: readonly [number, number, number, nu
   return { point: null, unplaced: shown[Math.floor(shown.length / 2)]?.reason ?? "off_surface" };
 }
 
-/** Keeps the length between the two measured points as that of the selected finding. */
+/** Keeps the length between the two measured points, in units of the model, as that of the selected finding. */
 export function keepMeasured(length: number, along: boolean, sigma: number): void {
   const [a, b] = measured.peek();
-  if (a && b) act("measure", { length, sigma, unit: data.model.unit, along, points: [[...a], [...b]] });
+  const { value, sigma: spread, unit } = scaled(length, sigma, data.model);
+  if (a && b) act("measure", { length: value, sigma: spread, unit, along, points: [[...a], [...b]] });
 }
 
 /** Offers `review.json` as a file. */

@@ -4,7 +4,7 @@ import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import type { Finding, Vec3 } from "./model/data";
 import { formatHash, NOWHERE, parseHash, type Layer, type Place, type Tab } from "./model/hash";
 import { byRank, type SortKey } from "./model/sorting";
-import { findingName } from "./model/words";
+import { findingName, type Units } from "./model/words";
 import type { VisibleFrame, SurfaceHit } from "./scene/questions";
 import { data, detections, detectionsOfFrame, findings, frames, order, position, questions, surface, visitsOfFinding } from "./session";
 
@@ -33,6 +33,8 @@ export const playing = signal(false);
 /** A box that is being drawn on the current frame, px: of a finding to be added, or around the new place of one. */
 export const drawing = signal<{ readonly what: "add" | "move"; readonly box: readonly [number, number, number, number] } | null>(null);
 export const helpOpen = signal(false);
+/** In which lengths are shown where a scale is known; the browser keeps it where it may. */
+export const units = signal<Units>(keptUnits());
 /** What the pixel clicked last shows. */
 export const asked = signal<{ readonly frame: number; readonly x: number; readonly y: number; readonly shown: SurfaceHit } | null>(null);
 /** The camera that an address asks for: on opening, on Back, by a link. */
@@ -55,6 +57,25 @@ export const visibleFrames = computed<readonly VisibleFrame[]>(() => {
   const one = finding.value;
   return one ? one.frames.map(({ frame_index, quality }) => ({ frame: frame_index, quality, x: NaN, y: NaN })) : [];
 });
+
+const UNITS_KEY = "bladeatlas-units";
+
+function keptUnits(): Units {
+  try {
+    return localStorage.getItem(UNITS_KEY) === "in" ? "in" : "mm";
+  } catch {
+    return "mm"; // a page opened as a file may keep nothing
+  }
+}
+
+export function setUnits(wanted: Units): void {
+  units.value = wanted;
+  try {
+    localStorage.setItem(UNITS_KEY, wanted);
+  } catch {
+    // The page shows them as long as it is open.
+  }
+}
 
 type Change = Partial<Place>;
 

@@ -3,7 +3,7 @@ import type { Finding } from "../src/model/data";
 import { marksOf } from "../src/model/marks";
 import { visibleRow } from "../src/model/row";
 import { byRank } from "../src/model/sorting";
-import { certainty, confidenceReasons, measured } from "../src/model/words";
+import { certainty, confidenceReasons, measured, scaled } from "../src/model/words";
 
 function finding(id: number, more: Partial<Finding> = {}): Finding {
   return {
@@ -28,6 +28,18 @@ test("the first visit decides the order by time", () => {
   const visit = (start_s: number, video = 0) => [{ event_id: 0, defect_id: 0, label: "", start_s, end_s: 9, n_detections: 1, n_frames: 1, video }];
   const visits = new Map([[0, visit(1, 1)], [1, visit(5)]]);
   expect([finding(0), finding(1), finding(2)].sort(byRank("time", false, visits)).map((one) => one.id)).toEqual([1, 0, 2]);
+});
+
+test("millimetres are shown in inches where these are wanted, and nothing else is", () => {
+  expect(measured(25.4, 2.54, "mm", "in")).toBe("1.00 ± 0.10 in");
+  expect(measured(645.16, 64.516, "mm²", "in")).toBe("1.00 ± 0.10 in²");
+  expect(measured(25.4, 2.54, "model", "in")).toBe("25.4 ± 2.5");
+});
+
+test("a length on the surface has millimetres with a scale only", () => {
+  const model = { index: 0, count: 1, unit: "mm", scale: 2, scale_sigma: 0.1 };
+  expect(scaled(10, 0.5, model)).toEqual({ value: 20, sigma: Math.hypot(1, 1), unit: "mm" });
+  expect(scaled(10, 0.5, { ...model, unit: "model", scale: null })).toEqual({ value: 10, sigma: 0.5, unit: "model" });
 });
 
 test("numbers are rounded by their uncertainty", () => {

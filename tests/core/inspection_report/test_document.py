@@ -9,10 +9,14 @@ from typing import Any
 import pytest
 
 from core.errors import BadInput
-from core.inspection_report.document import is_day
+from core.inspection_report.document import Shown, is_day
 from core.inspection_report.finding import amount
-from core.json_files import write_json
-from tests.core.inspection_report.making_reports import ROW, changed, document_of, source_of
+from core.inspection_report.forms import Form, written
+from core.json_files import read_json, write_json
+from core.report.limits import limits_document
+from core.scene.defect import DefectRecord
+from core.settings.limits import parse_limits
+from tests.core.inspection_report.making_reports import ROW, changed, document_of, form_of, source_of, text_of
 from tests.core.making_results import RESULTS
 
 
@@ -192,3 +196,62 @@ def test_what_is_no_finished_result_is_refused(tmp_path: Path) -> None:
     (tmp_path / "summary.json").write_text("[]")
     with pytest.raises(BadInput, match=r"summary.json holds no JSON object"):
         source_of(tmp_path)
+
+
+MEASURED = {
+    "length": 25.4,
+    "length_sigma": 2.54,
+    "width": 12.7,
+    "width_sigma": 1.27,
+    "area": 645.16,
+    "area_sigma": 64.516,
+    "length_unit": "mm",
+    "size_from": "box",
+    "size_reason": None,
+    "size_sigma": {"length": {"outline": 2.54, "pose": 0.0, "surface": 0.0, "scale": 0.0}},
+}
+SCALE = {"unit": "mm", "value": 2.54, "sigma": 0.0254, "source": "points"}
+
+
+def test_inches_are_shown_and_numbers_stay_in_millimetres(tmp_path: Path) -> None:
+    def told(summary: dict[str, Any]) -> None:
+        summary["scale"] = SCALE
+
+    folder = changed(tmp_path / "result", defects=lambda defects: defects[0].update(MEASURED), summary=told)
+    document = document_of(folder, shown=Shown(inches=True))
+    one = finding(document, "D0")
+    texts = [one[name]["text"] for name in ("size", "width", "area")]
+    assert texts == ["1 ± 0.1 in", "0.5 ± 0.05 in", "1 ± 0.1 in²"]
+    assert (one["size"]["value"], one["size"]["unit"]) == (25.4, "mm")
+    assert document["scale"]["text"].startswith("Scale: 0.1 ± 0.001 in in a unit of the model")
+    assert finding(document, "D1")["size"]["text"].endswith("(unscaled)"), "what has no scale has no inches"
+    for form in (Form.HTML, Form.CSV):
+        data = form_of(folder, form, shown=Shown(inches=True)).decode()
+        assert ("1 ± 0.1 in" in data) == (form == Form.HTML)
+        assert (",25.4,2.54,mm,length," in data) == (form == Form.CSV)
+
+
+def test_findings_are_compared_with_the_limits_that_are_told(tmp_path: Path) -> None:
+    folder = changed(tmp_path / "result", defects=lambda defects: defects[0].update(MEASURED))
+    assert finding(document_of(folder), "D0")["limits"] is None
+    document = document_of(folder, shown=Shown(limits=parse_limits("length_mm,count\n20,0\n"), inches=True))
+    one = finding(document, "D0")["limits"]
+    assert one["text"] == "beyond: its length of 1 ± 0.1 in is above the 0.7874 in of line 2"
+    assert finding(document, "D1")["limits"]["verdict"] == "cannot_tell"
+    assert document["limits"]["rows"] == [
+        {"line": 2, "text": "any, anywhere: length at most 0.7874 in, at most 0 on a blade"}
+    ]
+    source = source_of(folder)
+    page = written(Form.HTML, document, source).decode()
+    assert "beyond: its length of 1 ± 0.1 in" in page
+    assert "Compared at 2 standard deviations" in page
+    assert "beyond: its length of 1 ± 0.1 in" in text_of(written(Form.PDF, document, source))
+    assert ",beyond,its length of 1 ± 0.1 in is above" in written(Form.CSV, document, source).decode()
+
+
+def test_the_limits_of_the_result_itself_are_shown(tmp_path: Path) -> None:
+    folder = changed(tmp_path / "result", defects=lambda defects: defects[0].update(MEASURED))
+    records = [DefectRecord.from_dict(one) for one in read_json(folder / "mapping/defects.json")]
+    write_json(folder / "limits.json", limits_document(parse_limits("zone,length_mm\nany,20\n"), records))
+    text = finding(document_of(folder), "D0")["limits"]["text"]
+    assert text == "beyond: its length of 25.4 ± 2.5 mm is above the 20 mm of line 2"

@@ -2,13 +2,17 @@ from __future__ import annotations
 
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 
-from core.surface.glb import vertex_normals, write_glb
+from core.scene.size import Scale
+from core.surface.colored_glb import write_glb
+from core.surface.cut import by_blade
+from core.surface.glb import vertex_normals
 from core.surface.ply import Mesh
 
 MESH = Mesh(
@@ -42,6 +46,22 @@ def test_chunks_are_whole_and_aligned(tmp_path: Path) -> None:
     assert document["buffers"][0]["byteLength"] == binary
     assert all(view["byteOffset"] % 4 == 0 for view in document["bufferViews"])
     assert document["asset"]["extras"]["unit"] == "model"
+
+
+def test_every_blade_is_a_node_and_all_faces_stay(tmp_path: Path) -> None:
+    mesh = replace(MESH, extra={**MESH.extra, "blade": np.array([2, 2, 0, 0], np.int32)})
+    write_glb(tmp_path / "m.glb", mesh, Scale(2.0, 0.1, "row"))
+    scene = trimesh.load(tmp_path / "m.glb", process=False)
+    assert isinstance(scene, trimesh.Scene)
+    assert set(scene.geometry) == {"blade_2", "surface with defects"}
+    blade, other = scene.geometry["blade_2"], scene.geometry["surface with defects"]
+    assert blade.vertices == pytest.approx(0.002 * MESH.vertices[[0, 1, 2]] * [1, -1, -1])
+    assert other.vertices == pytest.approx(0.002 * MESH.vertices[[0, 2, 3]] * [1, -1, -1])
+    assert other.vertex_attributes["_DEFECT_ID"].ravel().tolist() == [-1, 0, 70000]
+    assert by_blade(MESH, "all") == {"all": MESH}
+    # Where two parts meet both have the normals of the whole.
+    whole = vertex_normals(MESH)
+    assert by_blade(mesh, "all")["all"].normals == pytest.approx(whole[[0, 2, 3]])
 
 
 def test_colours_are_linear_as_gltf_wants(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.surface.glb import GLTF_FROM_WORLD
+from core.surface.colored_glb import GLTF_FROM_WORLD
 from core.surface.ply import Mesh
 from core.viewer.parts import SURFACE, part_name, viewer_parts
 from core.viewer.quantized import write_quantized_glb
@@ -203,3 +203,20 @@ def test_a_node_has_as_many_primitives_as_two_bytes_need(tmp_path: Path) -> None
 def test_an_empty_surface_is_a_glb_too(tmp_path: Path) -> None:
     write_quantized_glb(tmp_path / "a.glb", {SURFACE: Mesh(np.zeros((0, 3)))})
     assert [node["name"] for node in Glb(tmp_path / "a.glb").document["nodes"]] == ["world"]
+
+
+def test_what_lies_on_a_blade_is_a_node_and_nothing_is_lost(tmp_path: Path) -> None:
+    mesh = bumpy()
+    blade = np.where(mesh.vertices[:, 0] > 1.0, 3, np.where(mesh.vertices[:, 0] < -1.0, 2, 0)).astype(np.int32)
+    defects = {7: np.arange(20)}
+    plain = viewer_parts(mesh, defects)
+    parts = viewer_parts(replace(mesh, extra={**mesh.extra, "blade": blade}), defects)
+    assert list(parts) == [SURFACE, "blade_2", "blade_3", part_name(7)]
+    assert sum(len(part.faces) for part in parts.values()) == sum(len(part.faces) for part in plain.values())
+    assert parts["blade_3"].vertices[:, 0].min() > 0.8
+    write_quantized_glb(tmp_path / "s.glb", parts)
+    glb = Glb(tmp_path / "s.glb")
+    assert (glb.values(glb.primitive("blade_3")["attributes"]["_BLADE"]) == 3).mean() > 0.9
+    corners = np.concatenate([part.vertices[part.faces].mean(axis=1) for part in parts.values()])
+    same = np.concatenate([part.vertices[part.faces].mean(axis=1) for part in plain.values()])
+    assert cKDTree(corners).query(same)[0].max() < 1e-9

@@ -83,6 +83,8 @@ export interface Finding {
   readonly root_distance?: number | null;
   readonly root_distance_sigma?: number | null;
   readonly length_unit?: string | null;
+  /** How it compares with the limits of the shop, where these were told. */
+  readonly limits?: { readonly verdict: string; readonly reason: string };
   /** Of a finding that a person drew: where, in shares of the source picture. */
   readonly drawn?: { readonly frame: number; readonly box: Box } | null;
 }
@@ -138,7 +140,7 @@ export interface Row {
 export interface ViewerData {
   readonly schema_version: number;
   readonly title: string;
-  readonly model: { readonly index: number; readonly count: number; readonly unit: string; readonly scale: number | null; readonly findings?: readonly [number, number] | null };
+  readonly model: { readonly index: number; readonly count: number; readonly unit: string; readonly scale: number | null; readonly scale_sigma?: number | null; readonly findings?: readonly [number, number] | null };
   readonly models: readonly { readonly index: number; readonly href: string }[];
   readonly videos: readonly Video[];
   readonly camera: CameraData | null;

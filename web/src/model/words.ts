@@ -9,13 +9,26 @@ export function seconds(value: number): string {
   return `${value.toFixed(2)} s`;
 }
 
-/** A value with its uncertainty, rounded so that the uncertainty keeps two digits. */
-export function measured(value: number | null | undefined, sigma: number | null | undefined, unit: string): string {
+export type Units = "mm" | "in";
+const MM_PER_INCH = 25.4;
+
+/** A value with its uncertainty, rounded so that the uncertainty keeps two digits; millimetres in inches where these are wanted. */
+export function measured(value: number | null | undefined, sigma: number | null | undefined, unit: string, wanted: Units = "mm"): string {
   if (value === null || value === undefined) return "unknown";
+  if (wanted === "in" && (unit === "mm" || unit === "mm²")) {
+    const factor = unit === "mm" ? MM_PER_INCH : MM_PER_INCH ** 2;
+    return measured(value / factor, sigma === null || sigma === undefined ? sigma : sigma / factor, unit.replace("mm", "in"));
+  }
   const own = unit === "model" ? "" : ` ${unit}`;
   if (!sigma) return `${digits(value, 3)}${own}`;
   const places = Math.max(0, 1 - Math.floor(Math.log10(sigma)));
   return `${value.toFixed(Math.min(places, 9))} ± ${sigma.toFixed(Math.min(places, 9))}${own}`;
+}
+
+/** A length between places of the surface, which are in units of the model, in those that the scale gives; and its uncertainty. */
+export function scaled(length: number, sigma: number, model: ViewerData["model"]): { readonly value: number; readonly sigma: number; readonly unit: string } {
+  if (model.unit === "model" || !model.scale) return { value: length, sigma, unit: "model" };
+  return { value: model.scale * length, sigma: Math.hypot(model.scale * sigma, (model.scale_sigma ?? 0) * length), unit: model.unit };
 }
 
 function digits(value: number, count: number): string {

@@ -2,7 +2,8 @@
 
 import type { JSX } from "preact";
 import { data, failure } from "../session";
-import { announcement, helpOpen } from "../state";
+import type { Units } from "../model/words";
+import { announcement, helpOpen, setUnits, units } from "../state";
 import { Detail } from "./Detail";
 import { FrameView } from "./FrameView";
 import { Help } from "./Help";
@@ -42,7 +43,7 @@ function Header(): JSX.Element {
       <p class="lead">
         <span class={`verdict ${verdict}`} title={VERDICTS[verdict] ?? ""}>{verdict}</span>
         {" "}{data.defects.length} {data.defects.length === 1 ? "finding" : "findings"}{inAll(model.findings)}, {data.detections.length} {data.detections.length === 1 ? "detection" : "detections"}, {data.frames.length} frames
-        {model.unit === "model" ? ", unscaled" : `, in ${model.unit}`}
+        {model.unit === "model" ? ", unscaled" : `, in ${units.value}`}
       </p>
       {models.length > 0 && (
         <nav aria-label="Models">
@@ -57,6 +58,11 @@ function Header(): JSX.Element {
           {message && <p>{message}</p>}
           <ul>{flags.map((one, k) => <li key={k} class={one.severity}><b>{one.severity}</b> {one.text}{one.where ? ` (${one.where})` : ""}.{one.advice ? ` ${one.advice}` : ""}</li>)}</ul>
         </details>
+      )}
+      {model.unit === "mm" && (
+        <label class="units">Lengths in{" "}
+          <select value={units.value} onChange={(event) => setUnits(event.currentTarget.value as Units)}><option value="mm">mm</option><option value="in">inches</option></select>
+        </label>
       )}
       <button type="button" class="help" onClick={() => (helpOpen.value = true)} aria-label="Keys" title="Keys (?)">?</button>
     </header>

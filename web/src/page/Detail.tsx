@@ -7,7 +7,7 @@ import { data, frames, surface, visitsOfFinding } from "../session";
 import { coverageOf } from "../model/row";
 import { reviewOf } from "../review";
 import { Ask, Exports, ReviewBar, Said } from "./Reviewing";
-import { blade, detection, finding, go, place, playVisit, selectFrame } from "../state";
+import { blade, detection, finding, go, place, playVisit, selectFrame, units } from "../state";
 import { LabelMark } from "./marks";
 
 export function Detail(): JSX.Element {
@@ -48,10 +48,10 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
       <ReviewBar one={one} />
       <Said review={review} />
       <dl>
-        <Fact name="Size">{measured(one.size, one.size_sigma, unit)} <Unscaled unit={unit} /></Fact>
-        {one.length !== undefined && <Fact name="Length × width">{measured(one.length, one.length_sigma, unit)} × {measured(one.width, one.width_sigma, unit)}</Fact>}
-        {one.area !== undefined && one.area !== null && <Fact name="Area">{measured(one.area, one.area_sigma, unit === "model" ? "model" : `${unit}²`)}</Fact>}
-        {one.depth !== undefined && one.depth !== null && <Fact name="Depth">{measured(one.depth, one.depth_sigma, unit)}</Fact>}
+        <Fact name="Size">{measured(one.size, one.size_sigma, unit, units.value)} <Unscaled unit={unit} /></Fact>
+        {one.length !== undefined && <Fact name="Length × width">{measured(one.length, one.length_sigma, unit, units.value)} × {measured(one.width, one.width_sigma, unit, units.value)}</Fact>}
+        {one.area !== undefined && one.area !== null && <Fact name="Area">{measured(one.area, one.area_sigma, unit === "model" ? "model" : `${unit}²`, units.value)}</Fact>}
+        {one.depth !== undefined && one.depth !== null && <Fact name="Depth">{measured(one.depth, one.depth_sigma, unit, units.value)}</Fact>}
         <Fact name="Blade">
           {bladeText(one.blade)}{one.side ? `, ${one.side.replaceAll("_", " ")}` : ""}
           {Number(one.blade) > 0 && surface?.mesh.blade.some((each) => each === Number(one.blade)) && (
@@ -59,7 +59,8 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
           )}
         </Fact>
         {one.span !== undefined && <Fact name="Span, chord">{share(one.span, one.span_sigma)}, {share(one.chord, one.chord_sigma)}</Fact>}
-        {one.root_distance !== undefined && one.root_distance !== null && <Fact name="From the root">{measured(one.root_distance, one.root_distance_sigma, unit)}</Fact>}
+        {one.root_distance !== undefined && one.root_distance !== null && <Fact name="From the root">{measured(one.root_distance, one.root_distance_sigma, unit, units.value)}</Fact>}
+        {one.limits && <Fact name="Limits of the shop"><b>{one.limits.verdict.replaceAll("_", " ")}</b>: {one.limits.reason}. What it means for the part a person says.</Fact>}
         <Fact name="Persistence">detected in {one.persistence.k} of the {one.persistence.n} frames that could show it</Fact>
         <Fact name="Place">{one.centroid.every(Number.isFinite) ? one.centroid.map((value) => value.toFixed(3)).join(", ") : "none on the surface"}{one.centroid_sigma ? ` ± ${one.centroid_sigma.toPrecision(2)}` : ""}</Fact>
       </dl>

@@ -8,7 +8,7 @@ import { bladeText, certainty, findingName, measured, percent, reasonText, secon
 import { data, detectionsOfFrame, order, visitsOfFinding } from "../session";
 import {
   allFindings, blade, descending, detection, filters, finding, frame, go, onlyUnplaced, place, reviewState, selectDetection, selectFinding,
-  selectFrame, setTab, shownFindings, sort, tab,
+  selectFrame, setTab, shownFindings, sort, tab, units,
 } from "../state";
 import { DetectionThumb, FindingThumb, LabelMark, Tile } from "./marks";
 
@@ -70,7 +70,7 @@ function Findings(): JSX.Element {
                   <span class="head"><LabelMark label={one.label} /> <b>{findingName(one.id)}</b> <bdi class="label">{one.label}</bdi>
                     {review && <span class={`review ${review}`}>{review}</span>}</span>
                   <span class="facts">
-                    <span>{one.length !== null && one.length !== undefined ? "length" : "size"} {measured(one.length ?? one.size, one.length === null || one.length === undefined ? one.size_sigma : one.length_sigma, one.length_unit ?? one.size_unit ?? data.model.unit)}</span>
+                    <span>{one.length !== null && one.length !== undefined ? "length" : "size"} {measured(one.length ?? one.size, one.length === null || one.length === undefined ? one.size_sigma : one.length_sigma, one.length_unit ?? one.size_unit ?? data.model.unit, units.value)}</span>
                     <span>blade {bladeText(one.blade)}</span>
                     <span title={`Detected in ${one.persistence.k} of the ${one.persistence.n} frames that could show it`}>seen {one.persistence.k}/{one.persistence.n}</span>
                     <span>{visits} {visits === 1 ? "visit" : "visits"}</span>

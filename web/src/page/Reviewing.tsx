@@ -8,7 +8,7 @@ import { findingName, measured } from "../model/words";
 import { act, add, asking, counts, draw, exportReview, kept, records, reviewOf, targetFor, unattached, undo, type Asked } from "../review";
 import { fromService, leaveOut, mayReview, notice, report, sendAnyway, severities, startPage, trouble, unsent } from "../server";
 import { data, detections, frames } from "../session";
-import { allFindings, drawing, finding } from "../state";
+import { allFindings, drawing, finding, units } from "../state";
 
 export function ReviewBar({ one }: { readonly one: Finding }): JSX.Element {
   const { state, reason, severity } = reviewOf(one.id);
@@ -98,7 +98,7 @@ export function Said({ review }: { readonly review: Review }): JSX.Element | nul
   if (review.severity) said.push(["Severity", review.severity]);
   if (review.blade !== null) said.push(["Blade", review.blade || "on none"]);
   if (review.point) said.push(["Moved to", review.point.map((value) => value.toFixed(3)).join(", ")]);
-  for (const one of review.measures.slice(-1)) said.push(["Measured", measured(one.length, one.sigma, one.unit)]);
+  for (const one of review.measures.slice(-1)) said.push(["Measured", measured(one.length, one.sigma, one.unit, units.value)]);
   if (review.without.length) said.push(["Without detections", review.without.join(", ")]);
   if (!said.length && !review.notes.length && !review.by) return null;
   return (

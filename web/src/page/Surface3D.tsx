@@ -5,13 +5,13 @@ import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Vec3 } from "../model/data";
 import { LAYERS, type Layer } from "../model/hash";
-import { bladeText, findingName } from "../model/words";
+import { bladeText, findingName, measured as amount, scaled } from "../model/words";
 import { norm, sub } from "../model/pose";
 import { pathAlong } from "../scene/along";
 import { handle } from "../scene/orbit";
 import { View3D } from "../scene/view3d";
 import { data, marks, questions, surface, surfaceReason } from "../session";
-import { addressed, blade, clip, finding, frame, frusta, go, layer, measured, measuring, place, selectPoint, setLayer } from "../state";
+import { addressed, blade, clip, finding, frame, frusta, go, layer, measured, measuring, place, selectPoint, setLayer, units } from "../state";
 import { keepMeasured } from "../review";
 import { drawMarks } from "./marks3d";
 
@@ -199,14 +199,15 @@ export function keepLength(): void {
 }
 
 function distances(a: Vec3, b: Vec3): string {
-  const { unit } = data.model;
   // Each end may lie anywhere between two neighbouring points of the surface.
   const error = Math.SQRT2 * questions.spacing;
   const straight = norm(sub(a, b));
   const along = surface ? pathAlong(surface, a, b) : null;
-  const own = unit === "model" ? "model units (unscaled)" : unit;
-  const say = (value: number): string => `${value.toPrecision(3)} ± ${error.toPrecision(1)}`;
-  return `Straight ${say(straight)} ${own}${along === null ? "; no path along the surface" : `; along the surface ${say(Math.max(along, straight))} ${own}`}`;
+  const say = (length: number): string => {
+    const { value, sigma, unit } = scaled(length, error, data.model);
+    return `${amount(value, sigma, unit, units.value)}${unit === "model" ? " model units (unscaled)" : ""}`;
+  };
+  return `Straight ${say(straight)}${along === null ? "; no path along the surface" : `; along the surface ${say(Math.max(along, straight))}`}`;
 }
 
 /** What is known of root, tip and blades; unknown is said. */

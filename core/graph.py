@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from core.geometry.lens import LensModel
+from core.geometry.lens import PERSPECTIVE, LensModel
 from core.scene.case import CaseKind
 from core.settings import Settings
 from core.stage import Facts
@@ -22,8 +22,9 @@ ALL_VIEWS = 1_000_000
 """End of the one chunk of a further model, whose number of views the plan does not know yet."""
 
 
-PERSPECTIVE = LensModel.SIMPLE_RADIAL
-"""The perspective lens tried when every model was rejected: one radial term, as little may be there to settle it."""
+PINHOLE_STARTS_DEG = (55.0, 85.0)
+"""Fields of view from which a lens without any distortion is tried beside the fisheye. The answer hardly depends on the
+start, since nothing trades against the focal length; that two end alike is what makes it one."""
 BY_A_WRONG_LENS = frozenset({"bent_model", "not_static", "two_motions"})
 """Findings that a lens of the wrong kind leads to; without parallax or a join another lens finds none either."""
 
@@ -49,9 +50,9 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
 
     Args:
         settings: of the run.
-        facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``reduce_coarse`` {best, start,
-            end}, ``reduce_refine`` {vetoed; codes, start, end}, ``prune`` {parts}, ``reduce_parts`` {best},
-            ``undistort`` {n_views}, ``pieces`` {n_pieces}.
+        facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``camera`` {model},
+            ``reduce_coarse`` {best, start, end}, ``reduce_refine`` {vetoed; codes, start, end}, ``prune`` {parts},
+            ``reduce_parts`` {best}, ``undistort`` {n_views}, ``pieces`` {n_pieces}.
     """
     tasks = [
         TaskSpec("probe"),
@@ -98,6 +99,16 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
             )
             for fov in settings.camera.fov_starts_deg
         ]
+        if not _is_model_told(settings):
+            # A preset with a single start is in a hurry here too.
+            focal += [
+                replace(
+                    focal[0],
+                    key=key_of("focal", part=f"{LensModel.PINHOLE}-{fov:05.1f}"),
+                    args={"fov_deg": fov, "model": str(LensModel.PINHOLE)},
+                )
+                for fov in PINHOLE_STARTS_DEG[: len(focal)]
+            ]
         tasks += focal
         focal_keys = tuple(task.key for task in focal)
     tasks.append(TaskSpec("camera", ("frames", *focal_keys)))
@@ -131,7 +142,7 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], front_end: S
         tasks.append(TaskSpec("prune", ("frames", "graph", "reduce_refine")))
         if "prune" not in facts:
             return tasks
-        perspective = _perspective(settings, facts["reduce_refine"], front_end)
+        perspective = _perspective(settings, facts, front_end)
         tasks += _parts(facts["prune"]["parts"], bool(perspective))
         if perspective and "reduce_parts" not in facts:
             return tasks
@@ -156,13 +167,20 @@ def _parts(intervals: Sequence[Sequence[int]], another_lens: bool) -> list[TaskS
     return [*cases, TaskSpec("reduce_parts", needs, {"another_lens": another_lens})]
 
 
-def _perspective(settings: Settings, rejected: Facts, front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
+def _is_model_told(settings: Settings) -> bool:
+    """Whether somebody said of which kind the lens is: then no other is tried."""
+    return settings.camera.model != LensModel.OPENCV_FISHEYE or "camera.model" in settings.overrides
+
+
+def _perspective(settings: Settings, facts: Mapping[str, Facts], front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
     """The lens sought anew as a perspective one, the graph verified by it, and the best rejected window mapped so.
 
-    None where somebody said what the lens is, or where what is wrong is not the lens's doing.
+    None where somebody said what the lens is, where it is a perspective one already, or where what is wrong is not the
+    lens's doing.
     """
-    starts = [task for task in front_end if task.stage == "focal"]
-    told = settings.camera.model != LensModel.OPENCV_FISHEYE or "camera.model" in settings.overrides or not starts
+    rejected = facts["reduce_refine"]
+    starts = [task for task in front_end if task.stage == "focal" and "model" not in task.args]
+    told = _is_model_told(settings) or not starts or facts["camera"]["model"] != LensModel.OPENCV_FISHEYE
     if told or BY_A_WRONG_LENS.isdisjoint(rejected["codes"].split(", ")):
         return []
     model = {"model": str(PERSPECTIVE)}

@@ -76,11 +76,11 @@ STAGES: dict[str, StageSpec] = {
             "matching.ratio",
             "verification",
             "seed",
-            version=3,
+            version=4,
             fan_out=True,
             weight=7,
         ),
-        _spec("camera", *_LENS, version=3, weight=0.1),
+        _spec("camera", *_LENS, version=4, weight=0.1),
         _spec(
             "matches", *_MATCHER, "matching.window", version=4, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
         ),

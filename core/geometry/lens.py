@@ -41,6 +41,10 @@ class LensModel(StrEnum):
     SIMPLE_RADIAL = "SIMPLE_RADIAL"
 
 
+PERSPECTIVE = LensModel.SIMPLE_RADIAL
+"""The perspective lens of a run where nobody said which it is: one radial term, because little may be there to settle
+more."""
+
 PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "SIMPLE_PINHOLE": ("f", "cx", "cy"),
     "PINHOLE": ("fx", "fy", "cx", "cy"),

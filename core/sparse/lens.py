@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import pycolmap
 
 from core.flags import Flag, FlagFields, Severity
-from core.geometry.lens import REDUCED, Lens, LensModel, make_lens, scale_to
+from core.geometry.lens import PERSPECTIVE, REDUCED, Lens, LensModel, make_lens, scale_to
 from core.settings import Settings
 from core.settings.groups import CameraSettings
 from core.stage import Facts
@@ -97,7 +97,9 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
     """Content of ``camera.json``, with the starts it was chosen from.
 
     A calibration or a given field of view counts before everything else; without usable starts it is COLMAP's
-    default, 1.2 times the longer side of the crop. `reason` says why an estimate was asked for and not used.
+    default, 1.2 times the longer side of the crop. `reason` says why an estimate was asked for and not used. Where
+    starts of a pinhole explain the clip at least as well as those of the settings' model, which has a radial term more,
+    the lens is a perspective one; only starts of the chosen kind then speak of its focal length.
 
     Raises:
         BadInput: the calibration is of a picture of another shape.
@@ -106,13 +108,18 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
     source_width, model = int(frames["source_width"]), settings.model
     focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
     chosen: Facts | None = None
+    others: Sequence[Facts] = ()
     told = _told_lens(frames, settings)
     if told is not None:
         focal, origin = told.focal_px, "calibration"
     elif settings.fov_deg is not None:
         focal, origin = focal_from_fov(settings.fov_deg, source_width, model), "given"
     elif settings.focal == "estimate":
+        starts, others = _of_kind(starts, model), _of_kind(starts, LensModel.PINHOLE)
         chosen = _best_start(starts, source_width, model)
+        pinhole = _pinhole(others, source_width, chosen)
+        if pinhole is not None:
+            chosen, starts, others, model = pinhole, others, starts, str(PERSPECTIVE)
         if chosen is None:
             reason = UNKNOWN if any(_found_a_model(start) for start in starts) else "no_start_found_a_model"
         elif _ran_away_alone(chosen, starts, source_width, model):
@@ -132,6 +139,7 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
         "agreement": agreement,
         "starts": [dict(start) for start in starts],
+        "other_starts": [dict(start) for start in others],
         "flags": [] if settings.focal != "estimate" or is_told else _warnings(agreement, reason, starts),
     }
 
@@ -139,10 +147,14 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
 def spans_said(camera: Facts) -> list[float]:
     """Focal lengths in px that the chosen start found, one for each of its spans that mapped; none without a choice."""
     chosen = [start for start in camera["starts"] if start["fov_deg"] == camera["chosen_start_deg"]]
+    return [focal for start in chosen for focal in _focal_lengths(start)]
+
+
+def _focal_lengths(start: Facts) -> list[float]:
+    """In px, of each span of a start that mapped."""
     return [
         float(span["focal_px"])
-        for start in chosen
-        for span in start.get("spans", ())
+        for span in start["spans"]
         if span["registered_images"] >= MIN_REGISTERED and span["points3D"] >= MIN_POINTS
     ]
 
@@ -171,6 +183,34 @@ def _best_start(starts: Sequence[Facts], source_width: int, model: str) -> Facts
     points = POINTS_SLACK * max(start["points3D"] for start in usable)
     usable = [start for start in usable if start["points3D"] >= points]
     return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
+
+
+def _of_kind(starts: Sequence[Facts], model: str) -> list[Facts]:
+    """The starts with this model of the lens."""
+    return [start for start in starts if start["model"] == model]
+
+
+def _pinhole(starts: Sequence[Facts], source_width: int, fisheye: Facts | None) -> Facts | None:
+    """The best start of a pinhole where that is the better explanation; None where it is not.
+
+    It has no radial term, so it explains as much by less where it maps as many images and points with no larger error,
+    and all its spans find the same focal length. Where a fisheye explains such a clip too, its radial term and its
+    focal length trade, and the latter may be anything.
+    """
+    best = _best_start(starts, source_width, LensModel.PINHOLE)
+    if best is None:
+        return None
+    focal = [px for start in starts for px in _focal_lengths(start)]
+    if not focal or not all(map(_found_a_model, starts)) or max(focal) > (1.0 + AGREE) * min(focal):
+        return None
+    if fisheye is None:
+        return best
+    as_much = (
+        best["registered"] >= REGISTERED_SLACK * fisheye["registered"]
+        and best["points3D"] >= POINTS_SLACK * fisheye["points3D"]
+        and best["mean_reprojection_error_px"] <= fisheye["mean_reprojection_error_px"]
+    )
+    return best if as_much else None
 
 
 def _found_a_model(start: Facts) -> bool:

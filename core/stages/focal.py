@@ -16,7 +16,10 @@ from core.stage import StageResult, StageTask
 
 
 def run(task: StageTask) -> StageResult:
-    """Map a few spans of keyframes from the task's field of view; a video that gives no model registers 0 images."""
+    """Map a few spans of keyframes from the task's field of view; a video that gives no model registers 0 images.
+
+    The lens is of the run's model, unless the task names another.
+    """
     torch.set_num_threads(task.threads)
     frames = task.facts["frames"]
     settings = of_model(task.settings, str(task.args.get("model", task.settings.camera.model)))
@@ -39,4 +42,5 @@ def run(task: StageTask) -> StageResult:
 
         found.append(find_focal(span, lens, settings, load, report))
     task.report(1, 1)
-    return StageResult({"fov_deg": fov, **joined(found), "spans": [asdict(span) for span in found]})
+    lens_of_start = {"fov_deg": fov, "model": settings.camera.model}
+    return StageResult({**lens_of_start, **joined(found), "spans": [asdict(span) for span in found]})

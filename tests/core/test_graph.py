@@ -17,7 +17,8 @@ from core.stage_specs import STAGES
 from core.task_key import stage_of, submodel_of
 
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
-SEARCHED: dict[str, Facts] = {**FRAMES, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
+CAMERA: dict[str, Facts] = {"camera": {"model": "OPENCV_FISHEYE"}}
+SEARCHED: dict[str, Facts] = {**FRAMES, **CAMERA, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
 CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": False}}
 WRONG: Facts = {"vetoed": True, "codes": "bent_model, weak_join", "start": 20, "end": 200}
 REJECTED: dict[str, Facts] = {**SEARCHED, "reduce_refine": WRONG}
@@ -84,11 +85,27 @@ def test_a_stage_waits_for_everything_that_it_joins() -> None:
 def test_a_start_that_finds_no_lens_stops_nothing() -> None:
     tasks = {task.key: task for task in expand(make_settings(), DENSE)}
     starts = [task for task in tasks.values() if task.stage == "focal"]
-    assert len(starts) == len(make_settings().camera.fov_starts_deg)
-    assert all(task.optional and task.key == f"focal/{task.args['fov_deg']:05.1f}" for task in starts)
+    assert {task.key for task in starts} == {
+        *(f"focal/{fov:05.1f}" for fov in make_settings().camera.fov_starts_deg),
+        "focal/PINHOLE-055.0",
+        "focal/PINHOLE-085.0",
+    }
+    assert all(task.optional for task in starts)
+    assert dict(next(task.args for task in starts if task.key == "focal/PINHOLE-055.0")) == {
+        "fov_deg": 55.0,
+        "model": "PINHOLE",
+    }
     assert all({"frames", "motion"} < set(task.depends) for task in starts)
     for stage in ("camera", "features", "matches", "graph", "depth", "fuse", "mesh"):
         assert not any(task.optional for task in tasks.values() if task.stage == stage), stage
+
+
+@pytest.mark.parametrize("model", ["OPENCV_FISHEYE", "SIMPLE_RADIAL"])
+def test_where_the_model_of_the_lens_was_told_no_pinhole_is_tried(model: str) -> None:
+    tasks = expand(make_settings(options={"camera.model": model}), FRAMES)
+    assert {task.key for task in tasks if task.stage == "focal"} == {
+        f"focal/{fov:05.1f}" for fov in make_settings().camera.fov_starts_deg
+    }
 
 
 def test_the_plan_only_grows() -> None:
@@ -143,10 +160,13 @@ def test_where_no_part_passes_a_perspective_lens_is_sought_and_all_that_follows_
         ({"camera.fov_deg": 90}, "bent_model"),
         ({"camera.focal": "colmap"}, "bent_model"),
         ({}, "no_parallax, weak_join"),
+        ({}, "perspective from the start"),
     ],
 )
 def test_a_lens_that_was_told_or_is_not_to_blame_is_not_sought_anew(options: dict[str, Any], codes: str) -> None:
     facts = {**PRUNED, "reduce_refine": {**WRONG, "codes": codes}}
+    if codes == "perspective from the start":
+        facts = {**PRUNED, "camera": {"model": "SIMPLE_RADIAL"}}
     tasks = {task.key: task for task in expand(make_settings(options=options), facts)}
     assert tasks["reduce_parts"].args == {"another_lens": False}  # it then ends the search
     assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")

@@ -12,7 +12,7 @@ import pytest
 
 from core.errors import NoReconstruction
 from core.features.io import write_features
-from core.graph import PERSPECTIVE
+from core.geometry.lens import PERSPECTIVE
 from core.io.frames import write_frames
 from core.scene.case import GRAPHS
 from core.scene.frame import Crop

@@ -25,14 +25,23 @@ from core.stages import camera
 FRAMES = {"crop": [38, 79, 825, 604], "source_width": 960, "source_height": 720, "n_search": 60}
 
 
-def start(fov: float, focal: float, registered: int = 60, points: int = 4000, error: float = 0.5) -> dict[str, Any]:
+def start(
+    fov: float,
+    focal: float,
+    registered: int = 60,
+    points: int = 4000,
+    error: float = 0.5,
+    model: str = "OPENCV_FISHEYE",
+) -> dict[str, Any]:
     return {
         "fov_deg": fov,
+        "model": model,
         "focal_px": focal,
         "k1": 0.02,
         "registered": registered,
         "points3D": points,
         "mean_reprojection_error_px": error,
+        "spans": [{"focal_px": focal, "registered_images": registered, "points3D": points}],
     }
 
 
@@ -164,6 +173,53 @@ def test_a_start_whose_radial_term_ran_away_gives_way_to_one_that_maps_less() ->
     nothing_left = choose_lens(FRAMES, CameraSettings(), starts[:2])
     assert (nothing_left["focal_from"], nothing_left["reason"]) == ("colmap", "lens_unknown")
     assert [flag["code"] for flag in nothing_left["flags"]] == ["lens_unknown"]
+
+
+ENDOSCOPE = {"crop": [0, 0, 320, 256], "source_width": 320, "source_height": 256, "n_search": 201}
+BY_FISHEYE = [
+    start(55.0, 497.7, 30, 1748, 0.568),
+    start(85.0, 486.6, 30, 1867, 0.556),
+    start(120.0, 474.6, 30, 1864, 0.555),
+]
+"""What starts of a fisheye say of a slow endoscopic clip: focal length and radial term trade."""
+
+
+def pinholes(*focal: float, registered: int = 30, points: int = 1944, error: float = 0.546) -> list[dict[str, Any]]:
+    kept = registered, points, error, "PINHOLE"
+    return [{**start(55.0 + 30 * i, px, *kept), "k1": 0.0} for i, px in enumerate(focal)]
+
+
+def test_a_pinhole_that_explains_as_much_by_less_is_the_lens() -> None:
+    chosen = choose_lens(ENDOSCOPE, CameraSettings(), [*BY_FISHEYE, *pinholes(298.5, 298.0)])
+    assert (chosen["model"], chosen["params"]) == ("SIMPLE_RADIAL", [298.5, 160.0, 128.0, 0.0])
+    assert (chosen["focal_from"], chosen["agreement"], chosen["flags"]) == ("estimated", 1.0, [])
+    assert {one["model"] for one in chosen["starts"]} == {"PINHOLE"}
+    assert chosen["other_starts"] == BY_FISHEYE
+    alone = choose_lens(ENDOSCOPE, CameraSettings(), [start(55.0, 500.0, 5), *pinholes(298.5, 298.0)])
+    assert (alone["model"], alone["reason"]) == ("SIMPLE_RADIAL", "")
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        pinholes(298.5, 298.0, error=0.556),
+        pinholes(298.5, 298.0, registered=28),
+        pinholes(298.5, 298.0, points=1600),
+        pinholes(298.5, 320.0),
+        [
+            {**one, "spans": [{**one["spans"][0], "focal_px": px} for px in (332.0, 239.0)]}
+            for one in pinholes(285.0, 285.0)
+        ],
+        [*pinholes(298.5), start(85.0, 298.0, 0, 0, 0.0, "PINHOLE")],
+        [],
+    ],
+    ids=["larger error", "fewer images", "fewer points", "two answers", "spans apart", "one answer", "none"],
+)
+def test_else_the_lens_stays_a_fisheye(other: list[dict[str, Any]]) -> None:
+    chosen = choose_lens(ENDOSCOPE, CameraSettings(), [*BY_FISHEYE, *other])
+    assert (chosen["model"], chosen["params"][0], chosen["chosen_start_deg"]) == ("OPENCV_FISHEYE", 474.6, 120.0)
+    assert (chosen["starts"], chosen["agreement"]) == (BY_FISHEYE, 1.0)
+    assert chosen["other_starts"] == other
 
 
 def test_what_the_spans_of_the_chosen_start_said() -> None:

@@ -18,7 +18,8 @@ from core.task_key import stage_of, submodel_of
 
 FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
 CAMERA: dict[str, Facts] = {"camera": {"model": "OPENCV_FISHEYE"}}
-SEARCHED: dict[str, Facts] = {**FRAMES, **CAMERA, "reduce_coarse": {"best": "seg_000_0000_0180", "start": 0, "end": 180}}
+COARSE: Facts = {"best": "seg_000_0000_0180", "start": 0, "end": 180}
+SEARCHED: dict[str, Facts] = {**FRAMES, **CAMERA, "reduce_coarse": COARSE}
 CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": False}}
 WRONG: Facts = {"vetoed": True, "codes": "bent_model, weak_join", "start": 20, "end": 200}
 REJECTED: dict[str, Facts] = {**SEARCHED, "reduce_refine": WRONG}

@@ -146,7 +146,8 @@ def test_the_perspective_lens_is_found_and_the_cameras_with_it(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    "starts", [[], [{"fov_deg": 70.0, "focal_px": 400.0, "k1": 0.0, "registered": 0, "points3D": 0}]]
+    "starts",
+    [[], [{"fov_deg": 70.0, "model": "SIMPLE_RADIAL", "focal_px": 400.0, "k1": 0.0, "registered": 0, "points3D": 0}]],
 )
 def test_without_a_perspective_lens_the_run_stays_refused_for_what_it_was(starts: list[Facts], tmp_path: Path) -> None:
     run = Run(tmp_path)

@@ -109,12 +109,12 @@ def _report(folder: Path) -> Report:
         raise BadInput(f"{folder.name} has no {', '.join(missing)}: is it a finished result?", where=missing[0])
     try:
         summary, quality = read_json(folder / SUMMARY), read_json(folder / QUALITY)
-        tables = [read_json(folder / name) for name in (DETECTIONS, TIMELINE, DEFECTS)]
+        detections, timeline, defects = (read_json(folder / name) for name in (DETECTIONS, TIMELINE, DEFECTS))
         frames = [_frame_row(row) for row in read_csv(folder / FRAMES)]
     except (OSError, ValueError, KeyError) as error:
         raise BadInput(f"a table of {folder.name} cannot be read: {error}", where=folder.name) from None
     limits = _object(folder / LIMITS)
-    return Report(Verdict(quality["verdict"]), summary, quality, frames, (), *tables, limits=limits)
+    return Report(Verdict(quality["verdict"]), summary, quality, frames, (), detections, timeline, defects, limits)
 
 
 def _frame_row(row: dict[str, str]) -> dict[str, str | int | float | None]:

@@ -43,7 +43,7 @@ function Header(): JSX.Element {
       <p class="lead">
         <span class={`verdict ${verdict}`} title={VERDICTS[verdict] ?? ""}>{verdict}</span>
         {" "}{data.defects.length} {data.defects.length === 1 ? "finding" : "findings"}{inAll(model.findings)}, {data.detections.length} {data.detections.length === 1 ? "detection" : "detections"}, {data.frames.length} frames
-        {model.unit === "model" ? ", unscaled" : `, in ${units.value}`}
+        {model.unit === "model" ? ", unscaled" : `, in ${units.value === "in" ? "inches" : model.unit}`}
       </p>
       {models.length > 0 && (
         <nav aria-label="Models">

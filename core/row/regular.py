@@ -20,8 +20,10 @@ F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
 MAX_OFF_PITCHES = 0.07
-"""True surfaces with waves of 0.3 to 1 mm on them have 0.01 to 0.05; two groups of blades that are joined 0.2 pitches,
-5 mm along the axis, 8 mm along the radius, 5 degrees or a tenth of their size off have 0.09 and more."""
+"""True surfaces have 0.001, with waves of 0.3 to 1 mm on them 0.01 to 0.05, and up to 0.05 between a blade that is
+half seen, on one side, and another of 16; the reconstructed surface of three blades has 0.001. Two groups of blades
+that are joined 0.2 pitches, 5 mm along the axis, 8 mm along the radius, 5 degrees or a tenth of their size off have
+0.09 and more."""
 CANDIDATES = 8
 """Nearest points that are asked for one facing the same way: the two sides of a thin blade lie close together."""
 MIN_COSINE = 0.7
@@ -32,8 +34,8 @@ LEAST_LEVER = 0.3
 """Cosine of the angle between the surface's normal and the turn: where it is less a turn hardly moves the surface."""
 ANOTHER_BLADE = 0.6
 """Of a pitch: what lies farther beside a place is of another blade."""
-LEAST_SHARED = 30
-"""Places that two blades must share to be compared."""
+LEAST_SHARED = 60
+"""Places that two blades must share to be compared: of a blade that is hardly seen a plane says too little."""
 REWEIGHTED = 5
 """Times that the plane is fitted to the differences, with Cauchy weights."""
 

@@ -5,7 +5,7 @@ A flag is a small fact. Stages put flags into their facts, the report collects t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import NotRequired, TypedDict
@@ -145,7 +145,7 @@ def _severity(value: str) -> Severity:
         raise StageFailed(f"unknown severity {value}", where="flags") from None
 
 
-def worst(flags: list[Flag]) -> Severity | None:
+def worst(flags: Sequence[Flag]) -> Severity | None:
     """The highest severity among `flags`; None without flags."""
     return max((flag.severity for flag in flags), key=SEVERITIES.index, default=None)
 
@@ -163,6 +163,6 @@ def verdict_by(flags: Iterable[Flag]) -> Verdict:
     return Verdict.SUSPECT if any(flag.severity != Severity.INFO for flag in flags) else Verdict.OK
 
 
-def error_codes(checks: Iterable[Mapping[str, object]]) -> str:
+def error_codes(checks: Iterable[Flag]) -> str:
     """Codes of the findings of severity `error` in their published form, sorted and joined: why a model is rejected."""
-    return ", ".join(sorted({str(check["code"]) for check in checks if check["severity"] == Severity.ERROR}))
+    return ", ".join(sorted({check.code for check in checks if check.severity == Severity.ERROR}))

@@ -12,9 +12,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from core.geometry.lens import PERSPECTIVE, LensModel
+from core.products.contract import Facts, Products
+from core.products.front import CameraProduct, FramesProduct
+from core.products.search import ChoiceProduct, PruneProduct, ReducerProduct, RefinedProduct, SubmodelsProduct
+from core.products.surface import UndistortProduct
 from core.scene.case import CaseKind
 from core.settings import Settings
-from core.stage import Facts
 from core.task_key import chunk_key, key_of, part_of, stage_of
 from core.windows import Window, coarse_windows, refined_windows
 
@@ -50,9 +53,10 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
 
     Args:
         settings: of the run.
-        facts: facts of finished tasks by key. Used: ``frames`` {n_frames, n_search}, ``camera`` {model},
-            ``reduce_coarse`` {best, start, end}, ``reduce_refine`` {vetoed; codes, start, end}, ``prune`` {parts},
-            ``reduce_parts`` {best}, ``undistort`` {n_views}, ``pieces`` {n_pieces}.
+        facts: of finished tasks by key; those of the stages that the plan unfolds over are read.
+
+    Raises:
+        StageFailed: the facts of such a stage cannot be used.
     """
     tasks = [
         TaskSpec("probe"),
@@ -61,15 +65,16 @@ def expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
     ]
     if "frames" not in facts:
         return tasks
-    n_frames, n_search = int(facts["frames"]["n_frames"]), int(facts["frames"]["n_search"])
-    front_end = _front_end(settings, n_frames)
+    done = Products(facts)
+    frames = done.of(FramesProduct, "frames")
+    front_end = _front_end(settings, frames.n_frames)
     tasks += front_end
-    coarse = coarse_windows(n_search, settings.windows)
+    coarse = coarse_windows(frames.n_search, settings.windows)
     tasks += [_case(window, ("graph",)) for window in coarse]
     tasks.append(TaskSpec("reduce_coarse", tuple(_case_key(window) for window in coarse)))
     if "reduce_coarse" not in facts:
         return tasks
-    return tasks + _from_search_on(settings, facts, front_end)
+    return tasks + _from_search_on(settings, done, front_end)
 
 
 def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
@@ -126,27 +131,28 @@ def _front_end(settings: Settings, n_frames: int) -> list[TaskSpec]:
     return tasks
 
 
-def _from_search_on(settings: Settings, facts: Mapping[str, Facts], front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
+def _from_search_on(settings: Settings, done: Products, front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
     """Refinement, final model, dense surface, mapping."""
-    n_search, best = int(facts["frames"]["n_search"]), facts["reduce_coarse"]
-    refined = refined_windows((int(best["start"]), int(best["end"])), n_search, settings.windows, str(best["best"]))
+    n_search, chosen = done.of(FramesProduct, "frames").n_search, done.of(ChoiceProduct, "reduce_coarse")
+    refined = refined_windows((chosen.start, chosen.end), n_search, settings.windows, chosen.best)
     tasks = [_case(window, ("graph", "reduce_coarse")) for window in refined]
-    coarse_key = key_of("coarse", part=str(best["best"]))
+    coarse_key = key_of("coarse", part=chosen.best)
     refine_keys = tuple(_case_key(window) for window in refined)
     tasks.append(TaskSpec("reduce_refine", ("annotations", "frames", "reduce_coarse", coarse_key, *refine_keys)))
-    if "reduce_refine" not in facts:
+    if "reduce_refine" not in done:
         return tasks
+    winner = done.of(RefinedProduct, "reduce_refine")
     graph, reducer = "graph", "reduce_refine"
-    if facts["reduce_refine"]["vetoed"]:
+    if winner.vetoed:
         graph, reducer = "prune", "reduce_parts"
         tasks.append(TaskSpec("prune", ("frames", "graph", "reduce_refine")))
-        if "prune" not in facts:
+        if "prune" not in done:
             return tasks
-        perspective = _perspective(settings, facts, front_end)
-        tasks += _parts(facts["prune"]["parts"], bool(perspective))
-        if perspective and "reduce_parts" not in facts:
+        perspective = _perspective(settings, done, front_end)
+        tasks += _parts(done.of(PruneProduct, "prune").parts, bool(perspective))
+        if perspective and "reduce_parts" not in done:
             return tasks
-        if perspective and not facts["reduce_parts"]["best"]:
+        if perspective and not done.of(ReducerProduct, "reduce_parts").best:
             graph, reducer = "reverify", "reduce_perspective"
             tasks += perspective
     tasks.append(TaskSpec("confirm", ("frames", graph, reducer)))
@@ -154,14 +160,14 @@ def _from_search_on(settings: Settings, facts: Mapping[str, Facts], front_end: S
     if settings.model.further:
         tasks.append(TaskSpec("pieces", ("frames", graph, "extend")))
     tasks.append(TaskSpec("undistort", ("frames", "extend")))
-    if "undistort" not in facts:
+    if "undistort" not in done:
         return tasks
-    return tasks + _dense_and_mapping(settings, facts, graph)
+    return tasks + _dense_and_mapping(settings, done, graph)
 
 
-def _parts(intervals: Sequence[Sequence[int]], another_lens: bool) -> list[TaskSpec]:
+def _parts(intervals: Sequence[tuple[int, int]], another_lens: bool) -> list[TaskSpec]:
     """The parts of a rejected model, each mapped alone, and the choice; `another_lens` follows where none passes."""
-    windows = [Window(CaseKind.SECTION, i, int(start), int(end)) for i, (start, end) in enumerate(intervals)]
+    windows = [Window(CaseKind.SECTION, i, start, end) for i, (start, end) in enumerate(intervals)]
     cases = [_case(window, ("prune",)) for window in windows]
     needs = ("annotations", "frames", "reduce_refine", *(one.key for one in cases))
     return [*cases, TaskSpec("reduce_parts", needs, {"another_lens": another_lens})]
@@ -172,27 +178,28 @@ def _is_model_told(settings: Settings) -> bool:
     return settings.camera.model != LensModel.OPENCV_FISHEYE or "camera.model" in settings.overrides
 
 
-def _perspective(settings: Settings, facts: Mapping[str, Facts], front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
+def _perspective(settings: Settings, done: Products, front_end: Sequence[TaskSpec]) -> list[TaskSpec]:
     """The lens sought anew as a perspective one, the graph verified by it, and the best rejected window mapped so.
 
     None where somebody said what the lens is, where it is a perspective one already, or where what is wrong is not the
     lens's doing.
     """
-    rejected = facts["reduce_refine"]
+    rejected = done.of(RefinedProduct, "reduce_refine")
     starts = [task for task in front_end if task.stage == "focal" and "model" not in task.args]
-    told = _is_model_told(settings) or not starts or facts["camera"]["model"] != LensModel.OPENCV_FISHEYE
-    if told or BY_A_WRONG_LENS.isdisjoint(rejected["codes"].split(", ")):
+    lens = done.of(CameraProduct, "camera").model
+    told = _is_model_told(settings) or not starts or lens != LensModel.OPENCV_FISHEYE
+    if told or BY_A_WRONG_LENS.isdisjoint(rejected.codes.split(", ")):
         return []
     model = {"model": str(PERSPECTIVE)}
     keys = [key_of("focal", part=f"{PERSPECTIVE}-{part_of(start.key)}") for start in starts]
     starts = [replace(one, key=key, args={**one.args, **model}) for one, key in zip(starts, keys, strict=True)]
-    case = _case(Window(CaseKind.PERSPECTIVE, 0, int(rejected["start"]), int(rejected["end"])), ("reverify",))
+    case = _case(Window(CaseKind.PERSPECTIVE, 0, rejected.start, rejected.end), ("reverify",))
     choice = TaskSpec("reduce_perspective", ("reduce_refine", "reduce_parts", case.key))
     return [*starts, TaskSpec("reverify", ("frames", "graph", "reduce_parts", *keys), model), case, choice]
 
 
-def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: str) -> list[TaskSpec]:
-    step, n_views = settings.compute.chunk_views, int(facts["undistort"]["n_views"])
+def _dense_and_mapping(settings: Settings, done: Products, graph: str) -> list[TaskSpec]:
+    step, n_views = settings.compute.chunk_views, done.of(UndistortProduct, "undistort").n_views
     chunks = [(start, min(start + step, n_views)) for start in range(0, n_views, step)]
     tasks: list[TaskSpec] = []
     depth = [TaskSpec(chunk_key("depth", i), ("undistort",), {"start": a, "end": b}) for i, (a, b) in enumerate(chunks)]
@@ -210,9 +217,9 @@ def _dense_and_mapping(settings: Settings, facts: Mapping[str, Facts], graph: st
     tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", graph, "extend", *dense_keys)))
     tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "blades", "map_defects")))
     tasks.append(TaskSpec("viewer", ("frames", "pictures", "extend", "mesh", "timeline")))
-    if settings.model.further and "pieces" not in facts:
+    if settings.model.further and "pieces" not in done:
         return tasks
-    n_submodels = int(facts["pieces"]["n_pieces"]) if settings.model.further else 0
+    n_submodels = done.of(SubmodelsProduct, "pieces").n_pieces if settings.model.further else 0
     timelines = [key_of("timeline", submodel) for submodel in range(n_submodels + 1)]
     for submodel in range(1, n_submodels + 1):
         tasks += _of_submodel(submodel, timelines[:submodel], graph)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from core.products.contract import Products
+from core.products.search import BestCase
 from core.scene.case import REDUCERS
-from core.stage import Facts
 from core.task_key import key_of
 
 SPARSE = "sparse"
@@ -150,10 +150,10 @@ def portrait_name(defect: int) -> str:
     return f"defect_{defect:03d}.jpg"
 
 
-def best_case(facts: Mapping[str, Facts]) -> str:
+def best_case(products: Products) -> str:
     """Task key of the case that the search chose; empty before the first reducer."""
     for reducer in REDUCERS:
-        found = facts.get(reducer, {})
-        if found.get("best"):
-            return key_of(str(found.get("kind", "coarse")), part=str(found["best"]))
+        found = products.find(BestCase, reducer)
+        if found is not None and found.best:
+            return key_of(found.kind, part=found.best)
     return ""

@@ -1,8 +1,8 @@
-"""What a stage is: typed input in, files below its own folder and a few facts out.
+"""What a stage is: typed input in, files below its own folder and a typed product out.
 
-A stage is a function `run(task: StageTask) -> StageResult`. It is deterministic for a seed, writes only
-below `task.out`, reads no environment, clock or global, reports progress through `task.progress` and
-stops with `Cancelled` soon after `task.cancelled()` turns true.
+A stage is a function `run(task: StageTask) -> P`, where `P` is the `Product` that its spec names. It is deterministic
+for a seed, writes only below `task.out`, reads no environment, clock or global, reports progress through
+`task.progress` and stops with `Cancelled` soon after `task.cancelled()` turns true.
 """
 
 from __future__ import annotations
@@ -13,12 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import Cancelled, StageFailed
+from core.products.contract import Facts, Products
 from core.settings import Settings
 from core.task_key import key_of, parts_of
 from core.video.limits import MAX_FRAME_PIXELS
 from core.videos import Recording
-
-Facts = dict[str, Any]
 
 
 def _no_progress(fraction: float, message: str) -> None:
@@ -37,7 +36,7 @@ class StageTask:
     inputs: Mapping[str, Path]
     """Result folder of every finished task this one depends on, by task key."""
     facts: Mapping[str, Facts]
-    """Facts of the same tasks, by task key."""
+    """Facts of the same tasks, by task key; `products` reads them."""
     recordings: Sequence[Recording]
     """The videos of the run in the order given, each with its annotations."""
     out: Path
@@ -55,6 +54,11 @@ class StageTask:
         if self.cancelled():
             raise Cancelled("the task was cancelled", where=self.key)
         self.progress(min(1.0, done / total) if total else 1.0, message)
+
+    @property
+    def products(self) -> Products:
+        """What the tasks that it depends on handed on beside their files."""
+        return Products(self.facts)
 
     @property
     def submodel(self) -> int:
@@ -79,13 +83,3 @@ class StageTask:
     def fan_in(self, stage: str) -> list[tuple[str, Path]]:
         """(key, folder) of every finished task of a fanned-out stage, ordered by key."""
         return [(key, self.inputs[key]) for key in parts_of(self.inputs, stage, self.submodel)]
-
-
-@dataclass(frozen=True)
-class StageResult:
-    """What a stage hands on beside its files: small JSON facts, free of clock times and machine paths.
-
-    Facts steer the plan and fill the report; with the hashes of the files they make the result's digest.
-    """
-
-    facts: Facts = field(default_factory=dict)

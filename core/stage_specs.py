@@ -1,22 +1,62 @@
-"""What every kind of task is: its version, the settings that it reads, where it may run, and what it weighs."""
+"""What every kind of task is: its version, its product, the settings it reads, where it may run, what it weighs."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
+from core.products.contract import Product
+from core.products.front import (
+    AnnotationsProduct,
+    BridgeProduct,
+    CameraProduct,
+    FeaturesProduct,
+    FocalProduct,
+    FramesProduct,
+    GraphProduct,
+    MatchesProduct,
+    MotionProduct,
+    PicturesProduct,
+    ProbeProduct,
+)
+from core.products.search import (
+    CaseProduct,
+    ChoiceProduct,
+    ConfirmProduct,
+    ExtendProduct,
+    PassedProduct,
+    PruneProduct,
+    ReducerProduct,
+    RefinedProduct,
+    ReverifyProduct,
+    SubmodelsProduct,
+)
+from core.products.surface import (
+    BladesProduct,
+    DepthProduct,
+    FuseProduct,
+    GalleryProduct,
+    MeshProduct,
+    PlacesProduct,
+    RowProduct,
+    TimelineProduct,
+    UndistortProduct,
+    ViewerProduct,
+)
 from core.states import Queue
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 
 
 @dataclass(frozen=True)
 class StageSpec:
-    """A kind of task: its code, what of the settings it reads, where it may run."""
+    """A kind of task: its code and product, what of the settings it reads, where it may run."""
 
     name: str
     version: int
     entry: str
     """``module:function`` of the stage; a string, so that the graph loads no vision library."""
+    product: type[Product]
+    """What it hands on beside its files: `run` returns this type, or one of it."""
     settings: tuple[str, ...]
     """Groups or single dotted options that the stage reads: exactly these enter its fingerprint."""
     fan_out: bool = False
@@ -30,8 +70,8 @@ class StageSpec:
     """Files of learnt weights that the stage uses; their hashes enter its fingerprint."""
 
 
-def _spec(name: str, *settings: str, version: int = 1, **more: Any) -> StageSpec:
-    return StageSpec(name, version, f"core.stages.{name}:run", settings, **more)
+def _spec(name: str, product: type[Product], *settings: str, version: int = 1, **more: Any) -> StageSpec:
+    return StageSpec(name, version, f"core.stages.{name}:run", product, settings, **more)
 
 
 def _options(group: str, *names: str) -> tuple[str, ...]:
@@ -52,6 +92,7 @@ STAGES: dict[str, StageSpec] = {
     for spec in (
         _spec(
             "probe",
+            ProbeProduct,
             *_options("input", "allow_truncated", "video_stream", "fps"),
             version=3,
             reads_video=True,
@@ -59,17 +100,19 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec(
             "annotations",
+            AnnotationsProduct,
             *_options("input", "time_convention", "annotation_format"),
             version=4,
             reads_annotations=True,
             weight=0.1,
         ),
-        _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
-        _spec("pictures", reads_video=True, weight=0.3),
-        _spec("features", "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
-        _spec("motion", weight=0.4),
+        _spec("frames", FramesProduct, "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
+        _spec("pictures", PicturesProduct, reads_video=True, weight=0.3),
+        _spec("features", FeaturesProduct, "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
+        _spec("motion", MotionProduct, weight=0.4),
         _spec(
             "focal",
+            FocalProduct,
             *_options("camera", "model", "principal_point", "focal_span", "focal_spans"),
             *_options("mapper", "min_model_size", "init_min_num_inliers"),
             *_options("mapper", "abs_pose_min_num_inliers", "abs_pose_min_inlier_ratio"),
@@ -80,25 +123,33 @@ STAGES: dict[str, StageSpec] = {
             fan_out=True,
             weight=7,
         ),
-        _spec("camera", *_LENS, version=4, weight=0.1),
+        _spec("camera", CameraProduct, *_LENS, version=4, weight=0.1),
         _spec(
-            "matches", *_MATCHER, "matching.window", version=4, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
+            "matches",
+            MatchesProduct,
+            *_MATCHER,
+            "matching.window",
+            version=4,
+            fan_out=True,
+            weight=45,
+            weights=(LIGHTGLUE_WEIGHTS,),
         ),
-        _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
-        _spec("graph", weight=0.3),
-        _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=25),
-        _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
-        _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
-        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.1),
-        _spec("prune", weight=0.1),
-        _spec("section", "mapper", "seed", fan_out=True, weight=0.5),
-        _spec("reduce_parts", "model.prefer_verified", version=2, weight=0.1),
-        _spec("reverify", *_LENS, "verification", "seed", version=2, weight=0.3),
-        _spec("perspective", "mapper", "seed", weight=0.5),
-        _spec("reduce_perspective", weight=0.1),
-        _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
+        _spec("bridge", BridgeProduct, *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
+        _spec("graph", GraphProduct, weight=0.3),
+        _spec("coarse", CaseProduct, "mapper", "seed", version=3, fan_out=True, weight=25),
+        _spec("reduce_coarse", ChoiceProduct, "model.veto", version=2, weight=0.1),
+        _spec("refine", CaseProduct, "mapper", "seed", version=3, fan_out=True, weight=21),
+        _spec("reduce_refine", RefinedProduct, "model.veto", "model.prefer_verified", version=4, weight=0.1),
+        _spec("prune", PruneProduct, weight=0.1),
+        _spec("section", CaseProduct, "mapper", "seed", fan_out=True, weight=0.5),
+        _spec("reduce_parts", ReducerProduct, "model.prefer_verified", version=2, weight=0.1),
+        _spec("reverify", ReverifyProduct, *_LENS, "verification", "seed", version=2, weight=0.3),
+        _spec("perspective", CaseProduct, "mapper", "seed", weight=0.5),
+        _spec("reduce_perspective", PassedProduct, weight=0.1),
+        _spec("confirm", ConfirmProduct, "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
         _spec(
             "extend",
+            ExtendProduct,
             "mapper",
             *_options("model", "veto", "register_rest", "join", "drop_loose", "final_adjustment", "align_keypoints"),
             *_options("model", "trim_tracks", "radial_terms", "loss_scale_px", "refine_principal_point"),
@@ -107,14 +158,16 @@ STAGES: dict[str, StageSpec] = {
             version=13,
             weight=18,
         ),
-        _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
+        _spec("pieces", SubmodelsProduct, "mapper", "model.further", "seed", weight=0.5),
         _spec(
             "undistort",
+            UndistortProduct,
             *_options("dense", "method", "views", "sources", "max_image_size_px", "scale", "max_stretch"),
             weight=1,
         ),
         _spec(
             "depth",
+            DepthProduct,
             *_options("dense", "method", "levels", "iterations", "best_views"),
             *_options("dense", "min_ncc", "min_triangulation_deg", "min_consistent"),
             "seed",
@@ -125,6 +178,7 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec(
             "geometric",
+            DepthProduct,
             *_options("dense", "method", "iterations", "best_views", "geometric_passes"),
             *_options("dense", "min_ncc", "min_triangulation_deg", "min_consistent"),
             "seed",
@@ -133,13 +187,21 @@ STAGES: dict[str, StageSpec] = {
             queue=Queue.GPU,
             weight=21,
         ),
-        _spec("fuse", "fusion", weight=3),
-        _spec("mesh", "mesh", weight=2),
-        _spec("row", "seed", version=2, weight=3),
-        _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", version=3, weight=1),
-        _spec("map_defects", "mapping", version=11, weight=0.6),
+        _spec("fuse", FuseProduct, "fusion", weight=3),
+        _spec("mesh", MeshProduct, "mesh", weight=2),
+        _spec("row", RowProduct, "seed", version=2, weight=3),
+        _spec(
+            "blades",
+            BladesProduct,
+            *_options("row", "count", "zero_blade", "direction", "edge_a"),
+            "seed",
+            version=3,
+            weight=1,
+        ),
+        _spec("map_defects", PlacesProduct, "mapping", version=11, weight=0.6),
         _spec(
             "timeline",
+            TimelineProduct,
             *_options("mapping", "method", "radius_fraction", "sigma_fraction"),
             "timeline",
             "scale",
@@ -147,7 +209,7 @@ STAGES: dict[str, StageSpec] = {
             version=11,
             weight=0.5,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
-        _spec("viewer", version=5, weight=2),
+        _spec("gallery", GalleryProduct, "gallery", "mapping.method", version=7, reads_video=True, weight=1),
+        _spec("viewer", ViewerProduct, version=5, weight=2),
     )
 }

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import TypedDict
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
 import numpy as np
@@ -144,7 +145,25 @@ def read_dropped(folder: Path) -> set[tuple[int, int]]:
     return {(first, second) for first, second in json.loads((folder / _DROPPED).read_text())}
 
 
-def table_facts(table: PairTable) -> dict[str, int]:
+class TableCounts(TypedDict):
+    """Counts of a table of pairs."""
+
+    n_pairs: int
+    n_verified: int
+    n_lightglue: int
+    n_inliers: int
+
+
+class GraphCounts(TypedDict):
+    """Counts of a view graph; see `core.products.front.GraphProduct`."""
+
+    n_pairs: int
+    n_verified: int
+    largest_component: int
+    median_triangulation_angle_deg: float
+
+
+def table_counts(table: PairTable) -> TableCounts:
     """Counts of one chunk of matches."""
     return {
         "n_pairs": len(table.pairs),
@@ -154,7 +173,7 @@ def table_facts(table: PairTable) -> dict[str, int]:
     }
 
 
-def graph_facts(table: PairTable, n_frames: int) -> dict[str, float]:
+def graph_counts(table: PairTable, n_frames: int) -> GraphCounts:
     """Counts of the whole graph; the largest component counts frames joined by verified pairs."""
     verified = table.verified
     first, second = table.pairs[verified].T

@@ -17,8 +17,8 @@ from sqlalchemy.orm import Session
 from core.errors import error_from_dict
 from core.fingerprint import digest_of
 from core.graph import TaskSpec
+from core.products.contract import Facts
 from core.settings import Settings
-from core.stage import Facts
 from core.states import InspectionState, TaskState
 from store.graph import Graph
 from store.leasing import input_files

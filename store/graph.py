@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from core.errors import BadInput
 from core.fingerprint import task_fingerprint
 from core.graph import TaskSpec, expand
+from core.products.contract import Facts
 from core.settings import Settings, declared_values
-from core.stage import Facts
 from core.stage_specs import STAGES, StageSpec
 from core.videos import input_role
 from core.weight_files import weights_digest

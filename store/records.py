@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any
 
-from core.stage import Facts
+from core.products.contract import Facts
 from core.states import InspectionState, TaskState
 
 

@@ -20,12 +20,12 @@ from sqlalchemy import ColumnElement, CursorResult, Select, delete, insert, insp
 from sqlalchemy.orm import Session
 
 from core.errors import BadInput
+from core.products.contract import Facts
 from core.scene.case import CASE_COLUMNS, CaseKind
 from core.scene.defect import TIMELINE_COLUMNS
 from core.scene.detection import DETECTION_COLUMNS
 from core.scene.on_row import ROW_COLUMNS
 from core.scene.size import SIZE_COLUMNS
-from core.stage import Facts
 from core.task_key import stage_of, submodel_of
 from store.cursors import CursorValue, decode_cursor, encode_cursor
 from store.db import Database

@@ -26,7 +26,6 @@ from core.report.build import Report, build_report, write_tables
 from core.report.load import load_tables, served_submodels
 from core.report.record import RunRecord, TaskRecord
 from core.settings import Settings
-from core.stage import Facts
 from core.states import TaskState, run_state
 from core.task_key import key_of
 from core.versions import all_versions
@@ -137,8 +136,7 @@ def report_rows(report: Report) -> dict[str, Any]:
 def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> Iterator[Collection]:
     """Everything that a run publishes; its tables lie below the folder `scratch` as long as the block lasts."""
     report = build_report(record)
-    facts = {task.key: task.facts for task in record.tasks if task.state == TaskState.SUCCEEDED}
-    files = dict(_files(folders, facts, trusted=report.verdict != Verdict.REFUSED))
+    files = dict(_files(folders, best_case(record.products), trusted=report.verdict != Verdict.REFUSED))
     scratch.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="tables-", dir=scratch) as folder:
         compared = set(write_tables(report, Path(folder))) - set(TABLES)
@@ -146,13 +144,13 @@ def collected(record: RunRecord, folders: Mapping[str, Path], scratch: Path) -> 
         yield Collection(report, files, {path: Path(folder) / path for path in (*pages, *sorted(compared), *TABLES)})
 
 
-def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: bool) -> Iterator[tuple[str, Path]]:
-    """(published path, file) of everything the table of outputs finds."""
+def _files(folders: Mapping[str, Path], best: str, trusted: bool) -> Iterator[tuple[str, Path]]:
+    """(published path, file) of everything the table of outputs finds; `best` is the key of the chosen case."""
     wanted = [(output, "", 0) for output in OUTPUTS]
     for submodel in served_submodels(folders):
         wanted += [(output, f"models/{submodel}/", submodel) for output in OF_FURTHER_MODELS]
     for output, below, submodel in wanted:
-        source = _source(output, folders, facts, submodel)
+        source = _source(output, folders, best, submodel)
         if source is None or (output.needs_trust and not trusted):
             continue
         if not output.folder:
@@ -162,9 +160,9 @@ def _files(folders: Mapping[str, Path], facts: Mapping[str, Facts], trusted: boo
             yield f"{below}{output.path}/{path.relative_to(source).as_posix()}", path
 
 
-def _source(output: Output, folders: Mapping[str, Path], facts: Mapping[str, Facts], submodel: int) -> Path | None:
+def _source(output: Output, folders: Mapping[str, Path], best: str, submodel: int) -> Path | None:
     for key, inner in output.sources:
-        folder = folders.get(best_case(facts) if key == BEST_CASE else key_of(key, submodel))
+        folder = folders.get(best if key == BEST_CASE else key_of(key, submodel))
         if folder is not None and (folder / inner).exists():
             return folder / inner
     return None

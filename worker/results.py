@@ -20,7 +20,7 @@ from typing import Any
 
 from core.errors import DiskFull
 from core.fingerprint import canonical_json, digest_of, digest_of_file
-from core.stage import Facts
+from core.products.contract import Facts
 from core.task_key import stage_of
 from store.disk import disk_is_full, sync_path
 

@@ -31,8 +31,9 @@ import psutil
 from core.child_environment import child_environment
 from core.confinement import NetworkGuard, ProcessLimits, confine, die_with
 from core.errors import BladeAtlasError, DiskFull, ProgrammingError, ResourceError, StageFailed, error_from_dict
+from core.products.contract import Product, read_product
 from core.settings import Settings, only_declared
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.videos import Recording
 from store.disk import NO_SPACE, disk_is_full
 from worker.limits import TaskLimits
@@ -308,7 +309,7 @@ def _stage_process(spec: dict[str, Any], channel: Channel, guard: int) -> NoRetu
 def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) -> dict[str, Any]:
     started = time.monotonic()
     module, _, function = str(spec["entry"]).partition(":")
-    run: Callable[[StageTask], StageResult] = getattr(importlib.import_module(module), function)
+    run: Callable[[StageTask], Product] = getattr(importlib.import_module(module), function)
     out = Path(spec["out"])
     task = StageTask(
         key=spec["key"],
@@ -323,7 +324,9 @@ def _run(spec: dict[str, Any], channel: Channel, cancelled: Callable[[], bool]) 
         progress=channel.progress,
         cancelled=cancelled,
     )
-    facts = json.loads(json.dumps(run(task).facts, allow_nan=False))
+    product = run(task)
+    facts = json.loads(json.dumps(product.facts, allow_nan=False))
+    read_product(type(product), facts, task.key)  # what cannot be read again is told here, not by a later task
     manifest = seal(
         out,
         fingerprint=spec["fingerprint"],

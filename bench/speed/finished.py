@@ -10,9 +10,9 @@ from pathlib import Path
 from core.errors import BadInput
 from core.features.io import FrameFeatures, feature_name, read_features
 from core.io.frames import images_folder, read_frames
+from core.products.contract import Facts
 from core.scene.frame import RunFrames
 from core.settings import Settings
-from core.stage import Facts
 from core.task_key import stage_of
 from store.db import open_sqlite
 from store.graph import CORE_GRAPH

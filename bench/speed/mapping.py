@@ -39,7 +39,7 @@ def compare(run: FinishedRun, *, threads: int, repeat: int) -> Table:
             out = folder / f"out{next(number)}"
             out.mkdir()
             task = StageTask("map_defects", {}, run.settings, inputs, run.facts, (), out, threads)
-            mapped.append(int(map_defects(task).facts["outcomes"].get("mapped", 0)))
+            mapped.append(map_defects(task).outcomes.get("mapped", 0))
 
         timing = interleaved({"mapping": once}, repeat)["mapping"]
     return Table(

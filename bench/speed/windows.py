@@ -12,6 +12,8 @@ from typing import Any
 from bench.speed.finished import FinishedRun
 from bench.speed.timing import Row, Table
 from core.errors import StageFailed
+from core.products.contract import Products
+from core.products.front import FramesProduct
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.task_key import key_of
@@ -42,7 +44,7 @@ def choose_windows(n_search: int, run: FinishedRun, count: int = 3) -> list[Wind
 
 def compare(run: FinishedRun, *, threads: int, repeat: int, cap_s: float = CAP_S) -> Table:
     """Map the windows as the run does and as COLMAP does by default, `repeat` times in turn."""
-    n_search = int(run.facts["frames"]["n_search"])
+    n_search = Products(run.facts).of(FramesProduct, "frames").n_search
     colmap = make_settings("thesis").mapper
     rows, totals = [], {"ours": 0.0, "colmap": 0.0}
     for window in choose_windows(n_search, run):

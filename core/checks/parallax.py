@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.flags import Flag, Severity
+from core.products.search import CaseProduct
 from core.scene.case import CaseReason, CaseStatus
 
 MAX_STILL_SHARE = 0.5
@@ -23,22 +24,22 @@ MAX_PLANAR_SHARE = 0.95
 MIN_PLANAR_PAIRS = 10
 
 
-def cases_parallax(rows: Sequence[Mapping[str, object]]) -> Flag | None:
+def cases_parallax(cases: Sequence[CaseProduct]) -> Flag | None:
     """Whether the search found no model because the views do not differ in place.
 
     A pair of neighbouring frames cannot tell: keypoint noise of a turning camera triangulates under up to 0.3
     degrees. Each case therefore tries one rotation on its longest tracks (`core.sparse.parallax`).
 
     Args:
-        rows: of cases that ended, each with `status` and `reason`.
+        cases: those that ended.
 
     Returns:
         `no_parallax` with the share of such cases, when none has a model and most end for that reason.
     """
-    still = sum(row["reason"] == CaseReason.NO_PARALLAX for row in rows)
-    if not rows or any(row["status"] == CaseStatus.SUCCEEDED for row in rows) or still <= MAX_STILL_SHARE * len(rows):
+    still = sum(case.reason == CaseReason.NO_PARALLAX for case in cases)
+    if not cases or any(case.status == CaseStatus.SUCCEEDED for case in cases) or still <= MAX_STILL_SHARE * len(cases):
         return None
-    return Flag("no_parallax", Severity.ERROR, still / len(rows), MAX_STILL_SHARE, f"{still} of {len(rows)} cases")
+    return Flag("no_parallax", Severity.ERROR, still / len(cases), MAX_STILL_SHARE, f"{still} of {len(cases)} cases")
 
 
 def model_parallax(angles_deg: NDArray[np.float64]) -> Flag | None:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from core.flags import Flag, Severity
 from core.json_files import JsonObject
+from core.products.surface import MeshProduct
 from core.report.record import RunRecord, TaskRecord
 from core.scene.defect import DefectRecord, least_defects
 from core.scene.detection import REASONS, DetectionRow, Outcome, Reason
@@ -24,13 +25,14 @@ def missing_parts(record: RunRecord) -> list[Flag]:
 
     None without a model to trust: such a run is refused, and other flags say why.
     """
-    if record.reason == "no_reconstruction" or not record.facts("extend"):
+    if record.reason == "no_reconstruction" or "extend" not in record.products:
         return []
     flags = [_failed(task) for task in record.tasks if _failed_after_model(record, task)]
     if record.state != RunState.SUCCEEDED and not flags:
         where = ": ".join(filter(None, (record.failed_stage, record.reason or record.state)))
         flags.append(Flag("incomplete", Severity.WARNING, where=where))
-    if not record.facts("mesh").get("n_faces"):
+    mesh = record.products.find(MeshProduct, "mesh")
+    if mesh is None or not mesh.n_faces:
         flags.append(Flag("no_surface", Severity.ERROR, where="mesh"))
     return [*flags, *_nothing_placed(record)]
 
@@ -38,7 +40,7 @@ def missing_parts(record: RunRecord) -> list[Flag]:
 def _failed_after_model(record: RunRecord, task: TaskRecord) -> bool:
     """A further model that never came to be is no loss; one that lost its surface is."""
     after = task.state == TaskState.FAILED and task.stage in AFTER_MODEL
-    return after and bool(record.facts(key_of("extend", submodel_of(task.key))))
+    return after and key_of("extend", submodel_of(task.key)) in record.products
 
 
 def _failed(task: TaskRecord) -> Flag:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 
 from core.checks.parallax import cases_parallax
-from core.flags import Flag, FlagFields, Severity, Verdict, error_codes, in_order, verdict_by
+from core.flags import Flag, Severity, Verdict, error_codes, in_order, verdict_by
+from core.products.contract import Findings, read_product
+from core.products.front import AnnotationsProduct, CameraProduct, ProbeProduct
+from core.products.search import CaseProduct, ExtendProduct, RankedCases
+from core.products.surface import MeshProduct, PlacesProduct
 from core.report.losses import funnel, losses, missing_parts, support_counts
-from core.report.record import Document, Row, RunRecord, TaskRecord
+from core.report.record import Document, RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
 from core.scene.case import CaseKind, CaseRow
@@ -24,36 +29,34 @@ def collect_flags(record: RunRecord) -> list[Flag]:
     """
     flags = [*_settings_flags(record), *missing_parts(record)]
     flags += _several_models(record)
-    still = cases_parallax([task.facts for task in record.tasks if task.stage in tuple(CaseKind) and task.facts])
+    still = cases_parallax([case for kind in CaseKind for case in record.products.parts(CaseProduct, kind)])
     if still is not None:
         flags.append(still)
     for task in record.tasks:
         submodel = submodel_of(task.key)
-        for row in [*_flags_that_count(record, task), *_checks_that_count(record, task)]:
-            flags.append(Flag.from_dict(row).of_model(submodel))
+        for flag in [*_flags_that_count(record, task), *_checks_that_count(record, task)]:
+            flags.append(flag.of_model(submodel))
     return in_order(flags)
 
 
 def _start_of_lens(record: RunRecord) -> str:
     """The task whose lens the model started from: another one where the search ended with a perspective lens."""
-    return "reverify" if record.facts("reduce_perspective") else "camera"
+    return "reverify" if "reduce_perspective" in record.products else "camera"
 
 
-def _flags_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFields]:
+def _flags_that_count(record: RunRecord, task: TaskRecord) -> Sequence[Flag]:
     """Of the lenses that were sought, the flags of the one that the model started from."""
     if task.key in ("camera", "reverify") and task.key != _start_of_lens(record):
         return ()
-    flags: Sequence[FlagFields] = task.facts.get("flags", ())
-    return flags
+    return read_product(Findings, task.facts, task.key).flags
 
 
-def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[FlagFields]:
+def _checks_that_count(record: RunRecord, task: TaskRecord) -> Sequence[Flag]:
     """Of the cases, the checks of the chosen one speak for the run, and only where no final model was made of it."""
     is_case = task.stage in tuple(CaseKind)
-    if is_case and (record.facts("extend") or part_of(task.key) != selected_case(record)):
+    if is_case and ("extend" in record.products or part_of(task.key) != selected_case(record)):
         return ()
-    checks: Sequence[FlagFields] = task.facts.get("checks", ())
-    return checks
+    return read_product(Findings, task.facts, task.key).checks
 
 
 def _several_models(record: RunRecord) -> list[Flag]:
@@ -83,7 +86,7 @@ def _point_at_crop_centre(record: RunRecord) -> bool:
 
 def verdict_of(record: RunRecord, flags: Sequence[Flag]) -> Verdict:
     """`refused` without a model to trust, `suspect` with any warning or error, else `ok`."""
-    if record.reason == "no_reconstruction" or not record.facts("extend"):
+    if record.reason == "no_reconstruction" or "extend" not in record.products:
         return Verdict.REFUSED
     return verdict_by(flags)
 
@@ -98,19 +101,21 @@ def build_quality(
     """The object of quality.json. Unknown = null; nothing is guessed."""
     defects = [] if verdict == Verdict.REFUSED else record.tables.defects
     steps = funnel(detections, defects, record.settings.mapping.method)
-    support = support_counts(detections, record.facts("map_defects").get("unique_support_points"))
+    places, model = record.products.find(PlacesProduct, "map_defects"), record.products.find(ExtendProduct, "extend")
+    support = support_counts(detections, None if places is None else places.unique_support_points)
+    annotations = record.products.find(AnnotationsProduct, "annotations")
     return {
         "schema_version": SCHEMA_VERSION,
         "verdict": verdict,
         "state": record.state,
         "reason": record.reason or None,
         "flags": [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags],
-        "checks": list(record.facts("extend").get("checks", ())),
+        "checks": [] if model is None else [flag.to_dict() for flag in model.checks],
         "notes": _notes(record),
         "funnel": steps,
         "lost": losses(detections),
         "support": support,
-        "time_convention": record.facts("annotations").get("time_convention"),
+        "time_convention": None if annotations is None else annotations.time_convention,
         **_of_several_videos(record),
         "lens": _lens(record),
         "registration": _registration(record),
@@ -126,7 +131,7 @@ def build_quality(
             "losers": _losers(record, cases),
         },
         "tables": thesis_tables(
-            record.facts,
+            record.products,
             record.settings,
             selected_case(record),
             cases,
@@ -160,15 +165,18 @@ def _notes(record: RunRecord) -> list[str]:
 
 def _of_several_videos(record: RunRecord) -> Document:
     """What is told of each video where there are several: how its keys were read, and its share of the frames."""
-    if len(record.facts("probe").get("videos", ())) < 2:
+    probed = record.products.find(ProbeProduct, "probe")
+    if probed is None or not probed.videos:
         return {}
+    annotations = record.products.find(AnnotationsProduct, "annotations")
     registered = set(record.tables.registered)
     videos = []
-    for number, facts in enumerate(record.facts("probe")["videos"]):
+    for number, length in enumerate(probed.videos):
         own = [frame.index for frame in record.tables.frames if frame.video == number]
         found = len(registered.intersection(own))
-        videos.append({"video": number, **facts, "frames": len(own), "registered": found})
-    return {"time_conventions": record.facts("annotations").get("time_conventions"), "videos": videos}
+        videos.append({"video": number, **asdict(length), "frames": len(own), "registered": found})
+    conventions = None if annotations is None else annotations.time_conventions
+    return {"time_conventions": None if conventions is None else list(conventions), "videos": videos}
 
 
 def _registration(record: RunRecord) -> dict[str, object]:
@@ -177,7 +185,8 @@ def _registration(record: RunRecord) -> dict[str, object]:
     frames, registered_set = record.tables.frames, set(record.tables.registered)
     annotated = {row.source for row in record.tables.detections if row.source is not None}
     seen = {frame.source for frame in frames if frame.index in registered_set}
-    in_video = record.facts("probe").get("n_frames")
+    probed = record.products.find(ProbeProduct, "probe")
+    in_video = None if probed is None else probed.n_frames
     return {
         "frames_in_video": in_video,
         "frames": offered,
@@ -192,24 +201,31 @@ def _registration(record: RunRecord) -> dict[str, object]:
 
 def _lens(record: RunRecord) -> dict[str, object]:
     """The lens of model 0, on the crop, where it started, and whether it was held there."""
-    start, final = record.facts(_start_of_lens(record)), record.facts("extend")
+    start = record.products.find(CameraProduct, _start_of_lens(record))
+    final = record.products.find(ExtendProduct, "extend")
     return {
-        "model": final.get("lens_model", start.get("model")),
-        "params": final.get("lens_params"),
-        "from": start.get("focal_from"),
+        "model": final.lens_model if final and final.lens_model else start.model if start else None,
+        "params": list(final.lens_params) if final and final.lens_params else None,
+        "from": start.focal_from if start else None,
         "held": not record.settings.mapper.refine_lens,
     }
 
 
 def _models(record: RunRecord) -> list[dict[str, object]]:
     """The served models; the first is the run's own."""
-    rows = []
+    rows: list[dict[str, object]] = []
     for number in (0, *sorted(record.tables.registered_further)):
-        facts = record.facts(key_of("extend", number))
-        if facts:
-            names = ("registered_images", "points3D", "mean_reprojection_error_px")
-            own = sum(defect.model == number for defect in record.tables.defects)
-            rows.append({"model": number, **{name: facts.get(name) for name in names}, "defects": own})
+        model = record.products.find(ExtendProduct, key_of("extend", number))
+        if model is not None:
+            rows.append(
+                {
+                    "model": number,
+                    "registered_images": model.registered_images,
+                    "points3D": model.points3D,
+                    "mean_reprojection_error_px": model.mean_reprojection_error_px,
+                    "defects": sum(defect.model == number for defect in record.tables.defects),
+                }
+            )
     return rows
 
 
@@ -218,17 +234,17 @@ def _share(part: int, whole: int | None) -> float | None:
 
 
 def _reprojection(record: RunRecord) -> dict[str, object]:
-    facts = record.facts("extend")
+    model = record.products.find(ExtendProduct, "extend")
     return {
-        "mean_px": facts.get("mean_reprojection_error_px"),
-        "median_px": facts.get("median_reprojection_error_px"),
+        "mean_px": None if model is None else model.mean_reprojection_error_px,
+        "median_px": None if model is None else model.median_reprojection_error_px,
     }
 
 
 def _surface(record: RunRecord) -> dict[str, object]:
     names = ("n_vertices", "n_faces", "diagonal_su", "point_spacing_su", "supported_share")
-    facts = record.facts("mesh")
-    return {name: facts.get(name) for name in names}
+    mesh = record.products.find(MeshProduct, "mesh")
+    return {name: None if mesh is None else getattr(mesh, name) for name in names}
 
 
 def _losers(record: RunRecord, cases: Sequence[CaseRow]) -> list[dict[str, object]]:
@@ -236,10 +252,12 @@ def _losers(record: RunRecord, cases: Sequence[CaseRow]) -> list[dict[str, objec
 
     `verified_detections` is null for coarse cases, which lost before detections were asked for.
     """
-    ranked = [row for reducer in ("reduce_refine", "reduce_parts") for row in record.facts(reducer).get("ranking", ())]
-    verified = {row["name"]: row.get("verified_detections") for row in ranked}
+    found = (record.products.find(RankedCases, reducer) for reducer in ("reduce_refine", "reduce_parts"))
+    verified = {case.name: case.verified_detections for ranking in found if ranking for case in ranking.ranking}
     winner = next((row.name for row in cases if row.selected), "")
-    checks = {part_of(task.key): task.facts.get("checks", ()) for task in record.of_stage(*CaseKind)}
+    checks = {
+        part_of(task.key): read_product(Findings, task.facts, task.key).checks for task in record.of_stage(*CaseKind)
+    }
     order = sorted(
         (row for row in cases if not row.selected),
         key=lambda row: (
@@ -263,7 +281,7 @@ def _losers(record: RunRecord, cases: Sequence[CaseRow]) -> list[dict[str, objec
     ]
 
 
-def _why_lost(row: CaseRow, checks: Sequence[Row], verified: int | None, of_winner: int | None) -> str:
+def _why_lost(row: CaseRow, checks: Sequence[Flag], verified: int | None, of_winner: int | None) -> str:
     if not row.succeeded:
         return str(row.reason or row.status)
     if row.vetoed:

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from core.products.contract import Facts, Products
 from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import Detection, DetectionRow
 from core.scene.frame import RunFrames
 from core.settings import Settings
-from core.stage import Facts
 from core.states import RunState, TaskState
 from core.task_key import stage_of
 
@@ -90,12 +90,10 @@ class RunRecord:
     metadata: Mapping[str, str] = field(default_factory=dict)
     """What the caller knows of the engine and the work; see `core.metadata`."""
 
-    def facts(self, key: str) -> Facts:
-        """Facts of a finished task; empty when it did not succeed or is not in the plan."""
-        for task in self.tasks:
-            if task.key == key and task.state == TaskState.SUCCEEDED:
-                return task.facts
-        return {}
+    @property
+    def products(self) -> Products:
+        """What the tasks that succeeded handed on beside their files."""
+        return Products({task.key: task.facts for task in self.tasks if task.state == TaskState.SUCCEEDED})
 
     def of_stage(self, *stages: str) -> list[TaskRecord]:
         """Tasks of the stages, in the plan's order."""

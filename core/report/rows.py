@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
+from core.products.contract import read_product
+from core.products.search import CaseProduct, ReducerProduct
 from core.report.record import RunRecord, TaskRecord
 from core.scene.case import REDUCERS, CaseKind, CaseRow, CaseStatus
 from core.scene.detection import DetectionRow, rows_without_model
@@ -27,9 +29,9 @@ def frame_rows(record: RunRecord) -> list[FrameRow]:
 def selected_case(record: RunRecord) -> str:
     """Name of the case whose model went on; empty when the search found none."""
     for reducer in REDUCERS:
-        facts = record.facts(reducer)
-        if facts.get("best"):
-            return str(facts["best"])
+        found = record.products.find(ReducerProduct, reducer)
+        if found is not None and found.best:
+            return found.best
     return ""
 
 
@@ -43,7 +45,7 @@ def case_rows(record: RunRecord) -> list[CaseRow]:
 def _case_row(task: TaskRecord, chosen: str) -> CaseRow:
     name, selected, seconds = part_of(task.key), part_of(task.key) == chosen, round(task.seconds, 3)
     if task.state != TaskState.FAILED:
-        return CaseRow.from_facts(task.facts, seconds=seconds, selected=selected)
+        return read_product(CaseProduct, task.facts, task.key).row(seconds=seconds, selected=selected)
     start, end = (int(part) for part in name.split("_")[-2:])
     return CaseRow(
         name=name,

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from core.fingerprint import digest_of
 from core.flags import Verdict
+from core.products.front import FramesProduct, ProbeProduct
+from core.products.search import ExtendProduct
+from core.products.surface import FuseProduct, MeshProduct, TimelineProduct
 from core.report.record import RunRecord, TaskRecord
 from core.report.rows import selected_case
 from core.report.tables import SCHEMA_VERSION
@@ -26,6 +30,7 @@ def build_summary(
 ) -> dict[str, Any]:
     """The object of summary.json."""
     parameters = record.settings.model_dump(mode="json")
+    grouped = record.products.find(TimelineProduct, "timeline")
     return {
         "schema_version": SCHEMA_VERSION,
         "state": record.state,
@@ -42,7 +47,7 @@ def build_summary(
         "fingerprint": run_fingerprint(record),
         "versions": dict(record.versions),
         "frame": _frame(record),
-        "scale": record.facts("timeline").get("scale", scale_fields(None)),
+        "scale": scale_fields(None) if grouped is None or grouped.scale is None else grouped.scale,
         "stages": _stages(record.tasks),
         "headline": _headline(record, detections, timeline, defects),
     }
@@ -50,14 +55,15 @@ def build_summary(
 
 def _frame(record: RunRecord) -> dict[str, object]:
     """The videos: size of the frames, the part of them that was used, px: x0, y0, x1, y1 (half open), and length."""
-    facts, video = record.facts("frames"), record.facts("probe")
+    frames, probed = record.products.find(FramesProduct, "frames"), record.products.find(ProbeProduct, "probe")
+    several = probed.videos if probed else None
     return {
-        "width": facts.get("source_width"),
-        "height": facts.get("source_height"),
-        "crop": facts.get("crop"),
-        "n_frames": video.get("n_frames"),
-        "duration_s": video.get("duration_s"),
-        **({"videos": video["videos"]} if "videos" in video else {}),
+        "width": frames.source_width if frames else None,
+        "height": frames.source_height if frames else None,
+        "crop": list(frames.crop) if frames else None,
+        "n_frames": probed.n_frames if probed else None,
+        "duration_s": probed.duration_s if probed else None,
+        **({} if several is None else {"videos": [asdict(one) for one in several]}),
     }
 
 
@@ -110,17 +116,19 @@ def _headline(
     timeline: Sequence[EventRow],
     defects: Sequence[DefectRecord],
 ) -> dict[str, Any]:
-    sparse, fused, mesh = record.facts("extend"), record.facts("fuse"), record.facts("mesh")
+    done = record.products
+    sparse, fused = done.find(ExtendProduct, "extend"), done.find(FuseProduct, "fuse")
+    mesh = done.find(MeshProduct, "mesh")
     return {
         "frames": len(record.tables.frames),
         "selected_case": selected_case(record) or None,
         "registered_images": len(record.tables.registered),
-        "points3D": sparse.get("points3D"),
-        "mean_reprojection_error_px": sparse.get("mean_reprojection_error_px"),
-        "median_reprojection_error_px": sparse.get("median_reprojection_error_px"),
-        "fused_points": fused.get("n_points"),
-        "mesh_vertices": mesh.get("n_vertices"),
-        "mesh_faces": mesh.get("n_faces"),
+        "points3D": sparse.points3D if sparse else None,
+        "mean_reprojection_error_px": sparse.mean_reprojection_error_px if sparse else None,
+        "median_reprojection_error_px": sparse.median_reprojection_error_px if sparse else None,
+        "fused_points": fused.n_points if fused else None,
+        "mesh_vertices": mesh.n_vertices if mesh else None,
+        "mesh_faces": mesh.n_faces if mesh else None,
         "detections": len(detections),
         "mapped": sum(row.outcome == Outcome.MAPPED for row in detections),
         "events": len(timeline),

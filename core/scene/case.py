@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
@@ -104,29 +103,6 @@ class CaseRow:
     def to_dict(self) -> dict[str, Any]:
         """Flat JSON form, keys in the order of the columns."""
         return asdict(self)
-
-    @classmethod
-    def from_facts(cls, facts: Mapping[str, Any], *, seconds: float | None, selected: bool) -> CaseRow:
-        """From the facts of the case's task; ValueError for a word that is not known."""
-        mode = facts.get("start_mode")
-        return cls(
-            name=str(facts["name"]),
-            kind=CaseKind(facts["kind"]),
-            start=facts["start"],
-            end=facts["end"],
-            status=CaseStatus(facts["status"]),
-            reason=facts["reason"] or None,
-            frames=facts["frames"],
-            models=facts["models"],
-            registered_images=facts["registered_images"],
-            points3D=facts["points3D"],
-            mean_reprojection_error_px=facts["mean_reprojection_error_px"],
-            median_reprojection_error_px=facts["median_reprojection_error_px"],
-            seconds=seconds,
-            start_mode=None if mode is None else StartMode(mode),
-            selected=int(selected),
-            vetoed=int(bool(facts.get("vetoed"))),
-        )
 
 
 CASE_COLUMNS: tuple[str, ...] = tuple(CaseRow.__dataclass_fields__)

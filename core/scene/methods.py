@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,8 @@ F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 I64 = NDArray[np.int64]
+
+T = TypeVar("T")
 
 Report = Callable[[float, float, str], None]
 """Called with what is done, the total, and a short message; it raises `Cancelled` to stop."""
@@ -71,7 +73,7 @@ class Placing(Protocol):
 
 
 @dataclass(frozen=True)
-class Grouped:
+class Grouped(Generic[T]):
     """Placed detections as defects of one model."""
 
     rows: tuple[DetectionRow, ...]
@@ -86,15 +88,15 @@ class Grouped:
     """(v,) share of the defects' colour in that of every vertex."""
     vertex_defect: I32
     """(v,) defect of every vertex; -1 = none."""
-    facts: Mapping[str, Any]
-    """What the rules count, for the stage's facts."""
+    product: T
+    """What the rules count, for the readers of the stage."""
     scale: Scale | None = None
     """Of the model; None while none is known."""
 
 
-class Grouping(Protocol):
+class Grouping(Protocol[T]):
     """A way to tell defects apart."""
 
-    def group(self) -> Grouped:
+    def group(self) -> Grouped[T]:
         """Group the detections that the placing of the same method left."""
         ...

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
 import pycolmap
 
 from core.checks.model import check_model
 from core.flags import Flag, Severity, worst
 from core.io.sparse import has_model, read_model, write_model
+from core.products.search import CaseProduct
 from core.scene.case import GRAPHS, CaseKind, CaseStatus
 from core.sparse.cases import Case, CaseResult, run_case
-from core.stage import Facts, StageResult, StageTask
+from core.stage import StageTask
 from core.task_key import key_of
 from core.viewgraph import read_graph
 
 
-def run_case_task(task: StageTask, kind: CaseKind) -> StageResult:
+def run_case_task(task: StageTask, kind: CaseKind) -> CaseProduct:
     """Map the window of a task; no model is an outcome, not an error."""
     case = Case(
         task.input(*GRAPHS),
@@ -32,7 +35,7 @@ def run_case_task(task: StageTask, kind: CaseKind) -> StageResult:
     result = run_case(case, _start_model(task), progress)
     if result.model is not None:
         write_model(task.out, result.model)
-    return StageResult({**_row(task, kind, result), **trust_facts(case_checks(result, case))})
+    return _product(task, kind, result, case_checks(result, case))
 
 
 def _start_model(task: StageTask) -> pycolmap.Reconstruction | None:
@@ -50,25 +53,27 @@ def case_checks(result: CaseResult, case: Case) -> list[Flag]:
     return check_model(result.model, result.stats, table, result.frames)
 
 
-def trust_facts(flags: list[Flag]) -> Facts:
-    """Facts `checks` and `vetoed`: a finding of severity `error` rejects a case."""
-    return {"checks": [flag.to_dict() for flag in flags], "vetoed": int(worst(flags) == Severity.ERROR)}
+def is_rejected(checks: Sequence[Flag]) -> bool:
+    """Whether a model is rejected: by a finding of severity `error`."""
+    return worst(checks) == Severity.ERROR
 
 
-def _row(task: StageTask, kind: CaseKind, result: CaseResult) -> Facts:
+def _product(task: StageTask, kind: CaseKind, result: CaseResult, checks: Sequence[Flag]) -> CaseProduct:
     stats = result.stats
-    return {
-        "name": task.args["name"],
-        "kind": kind,
-        "start": int(task.args["start"]),
-        "end": int(task.args["end"]),
-        "status": CaseStatus.NO_MODEL if result.model is None else CaseStatus.SUCCEEDED,
-        "reason": result.reason or "",
-        "frames": result.frames,
-        "models": result.models,
-        "registered_images": stats.registered_images,
-        "points3D": stats.points3D,
-        "mean_reprojection_error_px": stats.mean_reprojection_error_px,
-        "median_reprojection_error_px": stats.median_reprojection_error_px,
-        "start_mode": result.start_mode,
-    }
+    return CaseProduct(
+        name=task.args["name"],
+        kind=kind,
+        start=int(task.args["start"]),
+        end=int(task.args["end"]),
+        status=CaseStatus.NO_MODEL if result.model is None else CaseStatus.SUCCEEDED,
+        reason=result.reason or "",
+        frames=result.frames,
+        models=result.models,
+        registered_images=stats.registered_images,
+        points3D=stats.points3D,
+        mean_reprojection_error_px=stats.mean_reprojection_error_px,
+        median_reprojection_error_px=stats.median_reprojection_error_px,
+        start_mode=result.start_mode,
+        checks=tuple(checks),
+        vetoed=int(is_rejected(checks)),
+    )

@@ -7,7 +7,7 @@ k1): a short span does not determine more, and k1 to k4 beside a free focal leng
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import groupby
 
 import numpy as np
@@ -19,6 +19,7 @@ from core.geometry.lens import lens_of
 from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher
 from core.matching.mutual_nearest import mutual_nearest, unit_descriptors
+from core.products.front import FocalProduct, FocalSpan
 from core.scene.frame import image_name
 from core.settings import Settings
 from core.sparse.initial_pair import rank_initial_pairs
@@ -217,8 +218,8 @@ def _liveliness(middle: int, keyframes: Sequence[int], load: Load) -> float:
     return min(1.0, len(matches) / ENOUGH_MATCHES) * min(motion, ENOUGH_MOTION_PX)
 
 
-def joined(spans: Sequence[SpanFocal]) -> dict[str, float]:
-    """One start's facts over its spans; the focal length is the mean in logarithm, weighted by points."""
+def joined(fov_deg: float, model: str, spans: Sequence[SpanFocal]) -> FocalProduct:
+    """What the spans of one start say together; the focal length is the mean in logarithm, weighted by points."""
     weights = np.array([span.points3D for span in spans], dtype=np.float64)
     total = float(weights.sum())
     if total == 0.0:
@@ -228,11 +229,14 @@ def joined(spans: Sequence[SpanFocal]) -> dict[str, float]:
         focal = float(np.exp(weights @ np.log([span.focal_px for span in spans])))
         k1 = float(weights @ np.array([span.k1 for span in spans]))
         error = float(weights @ np.array([span.mean_reprojection_error_px for span in spans]))
-    return {
-        "focal_px": focal,
-        "k1": k1,
-        "registered": sum(span.registered_images for span in spans),
-        "points3D": int(total),
-        "mean_reprojection_error_px": error,
-        "frames": sum(span.frames for span in spans),
-    }
+    return FocalProduct(
+        fov_deg=fov_deg,
+        focal_px=focal,
+        k1=k1,
+        registered=sum(span.registered_images for span in spans),
+        points3D=int(total),
+        mean_reprojection_error_px=error,
+        model=model,
+        frames=sum(span.frames for span in spans),
+        spans=tuple(FocalSpan(**asdict(span)) for span in spans),
+    )

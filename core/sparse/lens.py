@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import pycolmap
 
-from core.flags import Flag, FlagFields, Severity
+from core.flags import Flag, Severity
 from core.geometry.lens import PERSPECTIVE, REDUCED, Lens, LensModel, make_lens, scale_to
+from core.products.front import CameraProduct, FocalProduct, FramesProduct
 from core.settings import Settings
 from core.settings.groups import CameraSettings
-from core.stage import Facts
 
 MIN_REGISTERED, MIN_POINTS = 8, 100
 """Registered images and points below which a start has found nothing."""
@@ -70,18 +70,18 @@ def estimate_model(model: str) -> str:
     return reduced[min(1, len(reduced) - 1)]
 
 
-def principal_point(frames: Facts, settings: CameraSettings) -> tuple[float, float]:
-    """(cx, cy) in crop pixels from the facts of stage `frames`."""
-    x0, y0, x1, y1 = (float(value) for value in frames["crop"])
+def principal_point(frames: FramesProduct, settings: CameraSettings) -> tuple[float, float]:
+    """(cx, cy) in crop pixels from what stage `frames` chose."""
+    x0, y0, x1, y1 = (float(value) for value in frames.crop)
     if settings.principal_point == "crop":
         return (x1 - x0) / 2.0, (y1 - y0) / 2.0
-    return float(frames["source_width"]) / 2.0 - x0, float(frames["source_height"]) / 2.0 - y0
+    return float(frames.source_width) / 2.0 - x0, float(frames.source_height) / 2.0 - y0
 
 
-def start_lens(frames: Facts, settings: CameraSettings, fov_deg: float) -> pycolmap.Camera:
+def start_lens(frames: FramesProduct, settings: CameraSettings, fov_deg: float) -> pycolmap.Camera:
     """`pycolmap.Camera` of the estimate's lens model for one start; its focal length counts as a prior."""
     width, height = _size(frames)
-    focal = focal_from_fov(fov_deg, int(frames["source_width"]), settings.model)
+    focal = focal_from_fov(fov_deg, frames.source_width, settings.model)
     model = estimate_model(settings.model)
     return pycolmap.Camera(
         camera_id=1,
@@ -93,7 +93,7 @@ def start_lens(frames: Facts, settings: CameraSettings, fov_deg: float) -> pycol
     )
 
 
-def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]) -> Facts:
+def choose_lens(frames: FramesProduct, settings: CameraSettings, starts: Sequence[FocalProduct]) -> CameraProduct:
     """Content of ``camera.json``, with the starts it was chosen from.
 
     A calibration or a given field of view counts before everything else; without usable starts it is COLMAP's
@@ -105,10 +105,11 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         BadInput: the calibration is of a picture of another shape.
     """
     width, height = _size(frames)
-    source_width, model = int(frames["source_width"]), settings.model
+    source_width = frames.source_width
+    model: str = settings.model
     focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
-    chosen: Facts | None = None
-    others: Sequence[Facts] = ()
+    chosen: FocalProduct | None = None
+    others: Sequence[FocalProduct] = ()
     told = _told_lens(frames, settings)
     if told is not None:
         focal, origin = told.focal_px, "calibration"
@@ -125,72 +126,72 @@ def choose_lens(frames: Facts, settings: CameraSettings, starts: Sequence[Facts]
         elif _ran_away_alone(chosen, starts, source_width, model):
             chosen, reason = None, UNKNOWN
         else:
-            focal, k1, origin = float(chosen["focal_px"]), float(chosen["k1"]), "estimated"
+            focal, k1, origin = chosen.focal_px, chosen.k1, "estimated"
     agreement = _agreement(starts, focal) if chosen is not None else None
     is_told = origin in ("given", "calibration")
     lens = told or Lens(focal, focal, *principal_point(frames, settings), (k1, 0.0, 0.0, 0.0))
-    return {
-        "model": model,
-        "width": width,
-        "height": height,
-        "params": lens.params(model),
-        "focal_from": origin,
-        "reason": reason,
-        "chosen_start_deg": None if chosen is None else chosen["fov_deg"],
-        "agreement": agreement,
-        "starts": [dict(start) for start in starts],
-        "other_starts": [dict(start) for start in others],
-        "flags": [] if settings.focal != "estimate" or is_told else _warnings(agreement, reason, starts),
-    }
+    return CameraProduct(
+        model=model,
+        width=width,
+        height=height,
+        params=tuple(lens.params(model)),
+        focal_from=origin,
+        reason=reason,
+        chosen_start_deg=None if chosen is None else chosen.fov_deg,
+        agreement=agreement,
+        starts=tuple(starts),
+        other_starts=tuple(others),
+        flags=() if settings.focal != "estimate" or is_told else _warnings(agreement, reason, starts),
+    )
 
 
-def spans_said(camera: Facts) -> list[float]:
+def spans_said(camera: CameraProduct) -> list[float]:
     """Focal lengths in px that the chosen start found, one for each of its spans that mapped; none without a choice."""
-    chosen = [start for start in camera["starts"] if start["fov_deg"] == camera["chosen_start_deg"]]
+    chosen = [start for start in camera.starts if start.fov_deg == camera.chosen_start_deg]
     return [focal for start in chosen for focal in _focal_lengths(start)]
 
 
-def _focal_lengths(start: Facts) -> list[float]:
+def _focal_lengths(start: FocalProduct) -> list[float]:
     """In px, of each span of a start that mapped."""
     return [
-        float(span["focal_px"])
-        for span in start["spans"]
-        if span["registered_images"] >= MIN_REGISTERED and span["points3D"] >= MIN_POINTS
+        span.focal_px
+        for span in start.spans
+        if span.registered_images >= MIN_REGISTERED and span.points3D >= MIN_POINTS
     ]
 
 
-def _told_lens(frames: Facts, settings: CameraSettings) -> Lens | None:
+def _told_lens(frames: FramesProduct, settings: CameraSettings) -> Lens | None:
     """The lens of a calibration on the crop, at the size of the video; None without a calibration."""
     if settings.params is None or settings.size_px is None:
         return None
-    factor = scale_to(settings.size_px, int(frames["source_width"]), int(frames["source_height"]))
-    x0, y0 = (float(value) for value in frames["crop"][:2])
+    factor = scale_to(settings.size_px, frames.source_width, frames.source_height)
+    x0, y0 = (float(value) for value in frames.crop[:2])
     return make_lens(settings.model, settings.params).scaled(factor).cropped(x0, y0)
 
 
-def _best_start(starts: Sequence[Facts], source_width: int, model: str) -> Facts | None:
+def _best_start(starts: Sequence[FocalProduct], source_width: int, model: str) -> FocalProduct | None:
     usable = [
         start
         for start in starts
         if _found_a_model(start)
-        and abs(start["k1"]) < MAX_K1
-        and FOV_RANGE_DEG[0] <= fov_from_focal(float(start["focal_px"]), source_width, model) <= FOV_RANGE_DEG[1]
+        and abs(start.k1) < MAX_K1
+        and FOV_RANGE_DEG[0] <= fov_from_focal(start.focal_px, source_width, model) <= FOV_RANGE_DEG[1]
     ]
     if not usable:
         return None
-    registered = REGISTERED_SLACK * max(start["registered"] for start in usable)
-    usable = [start for start in usable if start["registered"] >= registered]
-    points = POINTS_SLACK * max(start["points3D"] for start in usable)
-    usable = [start for start in usable if start["points3D"] >= points]
-    return min(usable, key=lambda start: (start["mean_reprojection_error_px"], start["fov_deg"]))
+    registered = REGISTERED_SLACK * max(start.registered for start in usable)
+    usable = [start for start in usable if start.registered >= registered]
+    points = POINTS_SLACK * max(start.points3D for start in usable)
+    usable = [start for start in usable if start.points3D >= points]
+    return min(usable, key=lambda start: (start.mean_reprojection_error_px, start.fov_deg))
 
 
-def _of_kind(starts: Sequence[Facts], model: str) -> list[Facts]:
+def _of_kind(starts: Sequence[FocalProduct], model: str) -> list[FocalProduct]:
     """The starts with this model of the lens."""
-    return [start for start in starts if start["model"] == model]
+    return [start for start in starts if start.model == model]
 
 
-def _pinhole(starts: Sequence[Facts], source_width: int, fisheye: Facts | None) -> Facts | None:
+def _pinhole(starts: Sequence[FocalProduct], source_width: int, fisheye: FocalProduct | None) -> FocalProduct | None:
     """The best start of a pinhole where that is the better explanation; None where it is not.
 
     It has no radial term, so it explains as much by less where it maps as many images and points with no larger error,
@@ -206,51 +207,51 @@ def _pinhole(starts: Sequence[Facts], source_width: int, fisheye: Facts | None) 
     if fisheye is None:
         return best
     as_much = (
-        best["registered"] >= REGISTERED_SLACK * fisheye["registered"]
-        and best["points3D"] >= POINTS_SLACK * fisheye["points3D"]
-        and best["mean_reprojection_error_px"] <= fisheye["mean_reprojection_error_px"]
+        best.registered >= REGISTERED_SLACK * fisheye.registered
+        and best.points3D >= POINTS_SLACK * fisheye.points3D
+        and best.mean_reprojection_error_px <= fisheye.mean_reprojection_error_px
     )
     return best if as_much else None
 
 
-def _found_a_model(start: Facts) -> bool:
-    return bool(start["registered"] >= MIN_REGISTERED and start["points3D"] >= MIN_POINTS)
+def _found_a_model(start: FocalProduct) -> bool:
+    return bool(start.registered >= MIN_REGISTERED and start.points3D >= MIN_POINTS)
 
 
-def _ran_away_alone(chosen: Facts, starts: Sequence[Facts], source_width: int, model: str) -> bool:
+def _ran_away_alone(chosen: FocalProduct, starts: Sequence[FocalProduct], source_width: int, model: str) -> bool:
     """Whether no other start agrees with this one, and what it found is hardly a lens."""
-    fov = fov_from_focal(float(chosen["focal_px"]), source_width, model)
+    fov = fov_from_focal(chosen.focal_px, source_width, model)
     hardly = not SOLE_FOV_RANGE_DEG[0] <= fov <= SOLE_FOV_RANGE_DEG[1]
-    return hardly and len(starts) > 1 and len(_near(starts, float(chosen["focal_px"]))) <= 1
+    return hardly and len(starts) > 1 and len(_near(starts, chosen.focal_px)) <= 1
 
 
-def _warnings(agreement: float | None, reason: str, starts: Sequence[Facts]) -> list[FlagFields]:
+def _warnings(agreement: float | None, reason: str, starts: Sequence[FocalProduct]) -> tuple[Flag, ...]:
     """Flags of an estimate; without any usable start nothing agrees."""
     if reason == UNKNOWN:
-        return [Flag(UNKNOWN, Severity.WARNING, where="camera").to_dict()]
+        return (Flag(UNKNOWN, Severity.WARNING, where="camera"),)
     share = agreement or 0.0
     if share >= MIN_AGREEMENT or (share and _all_alike(starts)):
-        return []
+        return ()
     where = "share of the starts that agree on the focal length"
-    return [Flag("focal_uncertain", Severity.WARNING, share, MIN_AGREEMENT, where).to_dict()]
+    return (Flag("focal_uncertain", Severity.WARNING, share, MIN_AGREEMENT, where),)
 
 
-def _all_alike(starts: Sequence[Facts]) -> bool:
+def _all_alike(starts: Sequence[FocalProduct]) -> bool:
     """Whether every start that found a model found the same focal length."""
-    found = [float(start["focal_px"]) for start in starts if _found_a_model(start)]
+    found = [start.focal_px for start in starts if _found_a_model(start)]
     return len(found) >= MIN_ALIKE and max(found) <= (1.0 + ALIKE) * min(found)
 
 
-def _agreement(starts: Sequence[Facts], focal: float) -> float:
+def _agreement(starts: Sequence[FocalProduct], focal: float) -> float:
     """Share of all starts that ended near `focal`."""
     return len(_near(starts, focal)) / len(starts)
 
 
-def _near(starts: Sequence[Facts], focal: float) -> list[Facts]:
+def _near(starts: Sequence[FocalProduct], focal: float) -> list[FocalProduct]:
     """The starts that ended near `focal`."""
-    return [start for start in starts if start["registered"] and abs(start["focal_px"] / focal - 1.0) <= AGREE]
+    return [start for start in starts if start.registered and abs(start.focal_px / focal - 1.0) <= AGREE]
 
 
-def _size(frames: Facts) -> tuple[int, int]:
-    x0, y0, x1, y1 = (int(value) for value in frames["crop"])
+def _size(frames: FramesProduct) -> tuple[int, int]:
+    x0, y0, x1, y1 = frames.crop
     return x1 - x0, y1 - y0

@@ -7,14 +7,15 @@ verify count (`core.mapping.support`; the final choice only), then the thesis's 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypedDict
 
 from core.errors import NoReconstruction, StageFailed
-from core.flags import Flag, FlagFields, Severity, error_codes
-from core.json_files import JsonObject
-from core.scene.case import CaseKind, CaseRow
-from core.task_key import parts_of
+from core.flags import Flag, Severity, error_codes
+from core.products.contract import Products
+from core.products.search import CaseProduct, ChoiceProduct, PassedProduct, Ranked, RefinedProduct
+from core.scene.case import CaseKind, CaseRow, StartMode
 
 
 @dataclass(frozen=True)
@@ -22,8 +23,8 @@ class Candidate:
     """A case that ended, and what it is worth to the inspection."""
 
     row: CaseRow
-    checks: Sequence[FlagFields]
-    """Flags of its model, as JSON values."""
+    checks: Sequence[Flag]
+    """Of its model."""
     verified: int | None = None
     """Detections that its points verify; None where they are not asked for."""
 
@@ -48,8 +49,8 @@ def rank(candidates: Sequence[Candidate], reject: bool = True) -> list[Candidate
     return sorted(by_name, key=lambda candidate: standing(candidate, reject), reverse=True)
 
 
-def reduce_cases(candidates: Sequence[Candidate], reject: bool = True) -> JsonObject:
-    """Facts of the reducer over the cases that ended.
+def reduce_cases(candidates: Sequence[Candidate], reject: bool = True) -> ChoiceProduct:
+    """The choice among the cases that ended.
 
     A rejected case can win here when all are: refinement may still find a model to trust around it.
     Raises `NoReconstruction` with the reasons counted when no case has a model.
@@ -57,11 +58,11 @@ def reduce_cases(candidates: Sequence[Candidate], reject: bool = True) -> JsonOb
     ranking = rank(candidates, reject)
     if not ranking:
         raise NoReconstruction(f"no case has a model: {_reasons(candidates)}", where="search")
-    return _facts(ranking[0], ranking)
+    return ChoiceProduct(**_choice(ranking[0], ranking))
 
 
-def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], reject: bool = True) -> JsonObject:
-    """Facts over the best coarse case and the refined ones: a refined case wins only if strictly better.
+def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], reject: bool = True) -> RefinedProduct:
+    """The choice among the best coarse case and the refined ones: a refined case wins only if strictly better.
 
     Verified detections are counted for all of them or for none. `vetoed` says that the winner is, which with `reject`
     means that every candidate is; `codes` are then those of the findings.
@@ -71,18 +72,18 @@ def reduce_refined(coarse_best: Candidate, refined: Sequence[Candidate], reject:
     winner = ranking[0] if better else coarse_best
     others = [candidate for candidate in (*ranking, coarse_best) if candidate.name != winner.name]
     ranked = [winner, *sorted(others, key=lambda candidate: standing(candidate, reject), reverse=True)]
-    return {
-        **_facts(winner, ranked),
-        "vetoed": not standing(winner, reject)[0],
-        "codes": error_codes(winner.checks),
-    }
+    return RefinedProduct(
+        **_choice(winner, ranked),
+        vetoed=not standing(winner, reject)[0],
+        codes=error_codes(winner.checks),
+    )
 
 
-def reduce_parts(rejected: JsonObject, parts: Sequence[Candidate]) -> JsonObject:
-    """Facts over the parts of a rejected model: the one that verifies most detections wins, of equals the largest.
+def reduce_parts(rejected: RefinedProduct, parts: Sequence[Candidate]) -> PassedProduct:
+    """The choice among parts of a rejected model: the one that verifies most detections wins, of equals the largest.
 
     Args:
-        rejected: facts of `reduce_refined`.
+        rejected: what `reduce_refined` chose.
         parts: cases of kind `part`, with verified detections or all without.
 
     Raises:
@@ -92,20 +93,20 @@ def reduce_parts(rejected: JsonObject, parts: Sequence[Candidate]) -> JsonObject
     if not ranking or ranking[0].row.vetoed:
         passed = f"; none of its {len(parts)} parts passes them" if parts else ""
         raise NoReconstruction(
-            f"every model was vetoed by the checks; the largest, {rejected['best']}: {rejected['codes']}{passed}",
+            f"every model was vetoed by the checks; the largest, {rejected.best}: {rejected.codes}{passed}",
             where="search",
         )
     row = ranking[0].row
-    where = f"frames {row.start}-{row.end - 1} of {rejected['best']}, vetoed for {rejected['codes']}"
+    where = f"frames {row.start}-{row.end - 1} of {rejected.best}, vetoed for {rejected.codes}"
     flag = Flag("parts_after_veto", Severity.WARNING, where=where)
-    return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
+    return PassedProduct(**_choice(ranking[0], ranking), flags=(flag,))
 
 
-def reduce_perspective(rejected: JsonObject, why: str, cases: Sequence[Candidate]) -> JsonObject:
-    """Facts over the cases of a perspective lens, of which the checks let the winner pass.
+def reduce_perspective(rejected: RefinedProduct, why: str, cases: Sequence[Candidate]) -> PassedProduct:
+    """The choice among the cases of a perspective lens, of which the checks let the winner pass.
 
     Args:
-        rejected: facts of `reduce_refined`.
+        rejected: what `reduce_refined` chose.
         why: what spoke against the fisheye lens, as a sentence without its full stop.
         cases: of kind `perspective`.
 
@@ -115,16 +116,15 @@ def reduce_perspective(rejected: JsonObject, why: str, cases: Sequence[Candidate
     ranking = rank(cases)
     if not ranking or ranking[0].row.vetoed:
         raise NoReconstruction(f"{why}; nor does a model of a perspective lens", where="search")
-    where = f"{rejected['best']}, vetoed for {rejected['codes']}"
+    where = f"{rejected.best}, vetoed for {rejected.codes}"
     flag = Flag("perspective_after_veto", Severity.WARNING, where=where)
-    return {**_facts(ranking[0], ranking), "flags": [flag.to_dict()]}
+    return PassedProduct(**_choice(ranking[0], ranking), flags=(flag,))
 
 
-def candidates_of(facts: Mapping[str, JsonObject], kind: CaseKind) -> list[Candidate]:
-    """Cases of a kind out of a task's facts, ordered by key."""
-    found = [facts[key] for key in parts_of(facts, kind)]
-    rows = [CaseRow.from_facts(own, seconds=None, selected=False) for own in found]
-    return [Candidate(row, own.get("checks", ())) for row, own in zip(rows, found, strict=True)]
+def candidates_of(products: Products, kind: CaseKind) -> list[Candidate]:
+    """Cases of a kind among the products of a task's inputs, ordered by key."""
+    found = products.parts(CaseProduct, kind)
+    return [Candidate(case.row(seconds=None, selected=False), case.checks) for case in found]
 
 
 def find_candidate(candidates: Sequence[Candidate], name: str) -> Candidate:
@@ -135,7 +135,20 @@ def find_candidate(candidates: Sequence[Candidate], name: str) -> Candidate:
     raise StageFailed(f"the case {name} has no row", where="search")
 
 
-def _facts(winner: Candidate, ranking: Sequence[Candidate]) -> JsonObject:
+class _Choice(TypedDict):
+    """The members of every choice."""
+
+    best: str
+    start: int
+    end: int
+    kind: CaseKind
+    registered_images: int
+    points3D: int
+    start_mode: StartMode | None
+    ranking: tuple[Ranked, ...]
+
+
+def _choice(winner: Candidate, ranking: Sequence[Candidate]) -> _Choice:
     row = winner.row
     return {
         "best": row.name,
@@ -145,14 +158,18 @@ def _facts(winner: Candidate, ranking: Sequence[Candidate]) -> JsonObject:
         "registered_images": row.registered_images,
         "points3D": row.points3D,
         "start_mode": row.start_mode,
-        "ranking": [_place(candidate) for candidate in ranking],
+        "ranking": tuple(_place(candidate) for candidate in ranking),
     }
 
 
-def _place(candidate: Candidate) -> JsonObject:
-    verified = {} if candidate.verified is None else {"verified_detections": candidate.verified}
+def _place(candidate: Candidate) -> Ranked:
     row = candidate.row
-    return {"name": row.name, **verified, "registered_images": row.registered_images, "points3D": row.points3D}
+    return Ranked(
+        name=row.name,
+        verified_detections=candidate.verified,
+        registered_images=row.registered_images,
+        points3D=row.points3D,
+    )
 
 
 def _reasons(candidates: Sequence[Candidate]) -> str:

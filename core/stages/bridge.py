@@ -9,12 +9,13 @@ from core.flags import Flag, Severity
 from core.io.frames import read_frames
 from core.matching.bridges import Pair, agreeing, bridge_places, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
-from core.stage import StageResult, StageTask
+from core.products.front import BridgeProduct
+from core.stage import StageTask
 from core.verification import read_camera
-from core.viewgraph import PairTable, join_tables, make_table, read_pairs, table_facts, write_dropped, write_pairs
+from core.viewgraph import PairTable, join_tables, make_table, read_pairs, table_counts, write_dropped, write_pairs
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> BridgeProduct:
     """Write ``pairs.npz`` with the further pairs and ``dropped.json`` with the pairs over jumps."""
     frames = read_frames(task.input("frames"))
     n_search = frames.n_search
@@ -51,16 +52,14 @@ def run(task: StageTask) -> StageResult:
     spanned = _spanned(gaps, extra.pairs[extra.n_inliers > 0].tolist())
     components = components_of(join_tables([table, extra]), len(frames))
     task.report(1, 1)
-    return StageResult(
-        {
-            **table_facts(extra),
-            "gaps": [list(gap) for gap in gaps],
-            "jumps": [[cut, cut + 1] for cut in jumps],
-            "dropped": int(dropped.sum()),
-            "spanned": [list(gap) for gap in spanned],
-            "largest_piece": int(max((components == label).sum() for label in set(components.tolist()))),
-            "flags": [flag.to_dict() for flag in (*_jump_flags(jumps), *_gap_flags(spanned))],
-        }
+    return BridgeProduct(
+        **table_counts(extra),
+        gaps=tuple(gaps),
+        jumps=tuple((cut, cut + 1) for cut in jumps),
+        dropped=int(dropped.sum()),
+        spanned=tuple(spanned),
+        largest_piece=int(max((components == label).sum() for label in set(components.tolist()))),
+        flags=(*_jump_flags(jumps), *_gap_flags(spanned)),
     )
 
 

@@ -10,14 +10,15 @@ from core.io.annotations import read_detections
 from core.io.frames import read_crop, read_frames
 from core.io.sparse import model_folder, read_model
 from core.mapping.support import boxes_by_frame, verified_detections
+from core.products.search import ChoiceProduct
 from core.sparse.reduce import Candidate
-from core.stage import Facts, StageTask
+from core.stage import StageTask
 from core.task_key import key_of
 
 
-def keep_winner(task: StageTask, facts: Facts) -> None:
-    """Copy the model of the case that `facts` of a reducer name: later stages need no case by name."""
-    winner = task.input(key_of(str(facts["kind"]), part=str(facts["best"])))
+def keep_winner(task: StageTask, choice: ChoiceProduct) -> None:
+    """Copy the model of the case that a reducer chose: later stages need no case by name."""
+    winner = task.input(key_of(choice.kind, part=choice.best))
     shutil.copytree(model_folder(winner), model_folder(task.out))
 
 

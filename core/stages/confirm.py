@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from core.checks.model import is_wrong
 from core.checks.stats import model_stats
 from core.io.sparse import read_model, write_model
+from core.products.search import ChoiceProduct, ConfirmProduct
 from core.scene.case import GRAPHS, REDUCERS, StartMode
 from core.sparse.cases import Case, confirmed_or_searched
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.viewgraph import read_graph
 
 if TYPE_CHECKING:
@@ -22,21 +23,21 @@ def _rejection(case: Case) -> Callable[[pycolmap.Reconstruction], bool]:
     return lambda model: is_wrong(model, table, case.end - case.start)
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> ConfirmProduct:
     """Write the model to go on with: the searched one as it is when it comes from scratch, or `model.confirm` is off.
 
     A warm model inherits what was wrong with the one that it started from; one from scratch has nothing to confirm.
     """
     reducer = next(name for name in REDUCERS if task.has(name))
-    winner = task.facts[reducer]
-    from_scratch = winner["start_mode"] == StartMode.SCRATCH
+    winner = task.products.of(ChoiceProduct, reducer)
+    from_scratch = winner.start_mode == StartMode.SCRATCH
     model, kept = read_model(task.input(reducer)), "searched"
     if task.settings.model.confirm and not from_scratch:
         # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
         case = Case(
             task.input(*GRAPHS),
-            int(winner["start"]),
-            int(winner["end"]),
+            winner.start,
+            winner.end,
             task.settings.mapper,
             task.settings.seed,
         )
@@ -48,14 +49,12 @@ def run(task: StageTask) -> StageResult:
         )
     write_model(task.out, model)
     stats = model_stats(model)
-    return StageResult(
-        {
-            "name": winner["best"],
-            "registered_images": stats.registered_images,
-            "points3D": stats.points3D,
-            "mean_reprojection_error_px": stats.mean_reprojection_error_px,
-            "median_reprojection_error_px": stats.median_reprojection_error_px,
-            "start_mode": StartMode.SCRATCH if kept == "confirmed" or from_scratch else winner["start_mode"],
-            "kept": kept,
-        }
+    return ConfirmProduct(
+        name=winner.best,
+        registered_images=stats.registered_images,
+        points3D=stats.points3D,
+        mean_reprojection_error_px=stats.mean_reprojection_error_px,
+        median_reprojection_error_px=stats.median_reprojection_error_px,
+        start_mode=StartMode.SCRATCH if kept == "confirmed" or from_scratch else winner.start_mode,
+        kept=kept,
     )

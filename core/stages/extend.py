@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -11,12 +12,15 @@ from numpy.typing import NDArray
 
 from core.checks.lens import check_left, check_shift
 from core.checks.model import check_model, is_wrong
-from core.checks.stats import model_stats
+from core.checks.stats import ModelStats, model_stats
 from core.errors import StageFailed
 from core.flags import Flag
 from core.geometry.lens import Lens, lens_of
 from core.io.frames import images_folder, write_registered
 from core.io.sparse import read_model, write_model
+from core.json_files import JsonObject
+from core.products.front import CameraProduct, FramesProduct
+from core.products.search import ExtendProduct
 from core.scene.case import GRAPHS
 from core.sparse.adjust import Adjustment, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
@@ -25,7 +29,7 @@ from core.sparse.keypoint_alignment import align_keypoints
 from core.sparse.lens import spans_said
 from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.weakly_connected import drop_weak_ends, drop_weak_images
-from core.stage import Facts, StageResult, StageTask
+from core.stage import StageTask
 from core.video.still import read_still
 from core.viewgraph import PairTable, database_of, read_graph
 
@@ -33,10 +37,10 @@ if TYPE_CHECKING:
     import pycolmap
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> ExtendProduct:
     """Write the final model, the list of its frames and what speaks against it."""
-    graph, n_frames = task.input(*GRAPHS), int(task.facts["frames"]["n_frames"])
-    n_search = int(task.facts["frames"]["n_search"])
+    graph, frames = task.input(*GRAPHS), task.products.of(FramesProduct, "frames")
+    n_frames, n_search = frames.n_frames, frames.n_search
     settings = task.settings.model
     model = read_model(task.input("pieces" if task.submodel else "confirm"), task.submodel)
     table = read_graph(graph)
@@ -67,7 +71,7 @@ def run(task: StageTask) -> StageResult:
             is_wrong=is_rejected,
         )
     model, dropped = drop_weak_ends(model, n_search) if settings.drop_loose else (model, [])
-    adjustment, said_px = None, spans_said(task.facts.get("reverify", task.facts["camera"]))
+    adjustment, said_px = None, spans_said(task.products.of(CameraProduct, "reverify", "camera"))
     left: Flag | None = None
     if settings.final_adjustment:
         adjustment = _adjust(task, model, hold_lens=not task.settings.mapper.refine_lens)
@@ -85,8 +89,10 @@ def run(task: StageTask) -> StageResult:
     write_registered(task.out, [int(image_id) - 1 for image_id in sorted(model.reg_image_ids())])
     # Of a further model nobody asks how much of the video it covers.
     offered = model.num_reg_images() if task.submodel else n_frames
-    facts = _facts(model, adjustment, table, offered, n_search, left or check_left(_lens(model).focal_px, said_px))
-    return StageResult({**facts, "joined": [attempt.to_dict() for attempt in attempts], "loose_frames": dropped})
+    left = left or check_left(_lens(model).focal_px, said_px)
+    stats = model_stats(model)
+    checks = _checks(model, stats, adjustment, table, offered, n_search, left)
+    return _product(model, stats, adjustment, checks, attempts, dropped)
 
 
 def _lens(model: pycolmap.Reconstruction) -> Lens:
@@ -123,37 +129,49 @@ def _aligner(task: StageTask) -> Align:
     return lambda model, drop: align_keypoints(model, read, still, drop=drop, threads=task.threads)
 
 
-def _facts(
+def _checks(
     model: pycolmap.Reconstruction,
+    stats: ModelStats,
     adjustment: Adjustment | None,
     table: PairTable,
     n_frames: int,
     n_search: int,
     left: Flag | None,
-) -> Facts:
-    stats = model_stats(model)
+) -> list[Flag]:
     flags = check_model(model, stats, table, n_frames, n_search)
     if adjustment is not None and adjustment.trimming is not None:
         flags += filter(None, [check_shift(adjustment.trimming.shift)])
-    flags += filter(None, [left])
+    return [*flags, *filter(None, [left])]
+
+
+def _product(
+    model: pycolmap.Reconstruction,
+    stats: ModelStats,
+    adjustment: Adjustment | None,
+    checks: Sequence[Flag],
+    attempts: Sequence[Attempt],
+    dropped: Sequence[int],
+) -> ExtendProduct:
     camera, lens = next(iter(model.cameras.values())), _lens(model)
-    return {
-        "registered_images": stats.registered_images,
-        "points3D": stats.points3D,
-        "mean_reprojection_error_px": stats.mean_reprojection_error_px,
-        "median_reprojection_error_px": stats.median_reprojection_error_px,
-        "track_length": stats.mean_track_length,
-        "lens_model": camera.model_name,
-        "lens_params": lens.params(camera.model_name),
-        "focal_px": lens.focal_px,
-        "principal_point_px": [lens.cx, lens.cy],
-        "principal_point_refined": adjustment is not None and adjustment.principal_point.refined,
-        "adjustment": None if adjustment is None else _adjustment_facts(adjustment),
-        "checks": [flag.to_dict() for flag in flags],
-    }
+    return ExtendProduct(
+        registered_images=stats.registered_images,
+        points3D=stats.points3D,
+        mean_reprojection_error_px=stats.mean_reprojection_error_px,
+        median_reprojection_error_px=stats.median_reprojection_error_px,
+        track_length=stats.mean_track_length,
+        lens_model=camera.model_name,
+        lens_params=tuple(lens.params(camera.model_name)),
+        focal_px=lens.focal_px,
+        principal_point_px=(lens.cx, lens.cy),
+        principal_point_refined=adjustment is not None and adjustment.principal_point.refined,
+        adjustment=None if adjustment is None else _adjustment(adjustment),
+        checks=tuple(checks),
+        joined=tuple(attempt.to_dict() for attempt in attempts),
+        loose_frames=tuple(dropped),
+    )
 
 
-def _adjustment_facts(adjustment: Adjustment) -> Facts:
+def _adjustment(adjustment: Adjustment) -> JsonObject:
     point, radial, trimming = adjustment.principal_point, adjustment.radial_terms, adjustment.trimming
     return {
         "rounds": adjustment.rounds,

@@ -14,11 +14,12 @@ from core.features.extract import inside_mask, make_extractor, read_image
 from core.features.io import feature_name, write_features
 from core.io.annotations import read_masks
 from core.io.frames import image_path, read_crop, read_damaged, read_frames
-from core.stage import StageResult, StageTask
+from core.products.front import FeaturesProduct
+from core.stage import StageTask
 from core.video.still import read_still
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> FeaturesProduct:
     """Detect features in frames [start, end)."""
     torch.set_num_threads(task.threads)
     start, end = int(task.args["start"]), int(task.args["end"])
@@ -38,12 +39,10 @@ def run(task: StageTask) -> StageResult:
         write_features(task.out / feature_name(index), features)
         counts.append(len(features))
     task.report(1, 1)
-    return StageResult(
-        {
-            "n_images": len(counts),
-            "min_keypoints": min(counts, default=0),
-            "mean_keypoints": round(sum(counts) / len(counts), 3) if counts else 0.0,
-        }
+    return FeaturesProduct(
+        n_images=len(counts),
+        min_keypoints=min(counts, default=0),
+        mean_keypoints=round(sum(counts) / len(counts), 3) if counts else 0.0,
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import lru_cache
 
 import torch
@@ -10,18 +9,19 @@ import torch
 from core.features.io import FrameFeatures, feature_files, read_features
 from core.io.frames import read_frames
 from core.matching.keyframes import read_keyframes
+from core.products.front import FocalProduct, FramesProduct
 from core.sparse.focal import choose_spans, find_focal, joined
 from core.sparse.lens import of_model, start_lens
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> FocalProduct:
     """Map a few spans of keyframes from the task's field of view; a video that gives no model registers 0 images.
 
     The lens is of the run's model, unless the task names another.
     """
     torch.set_num_threads(task.threads)
-    frames = task.facts["frames"]
+    frames = task.products.of(FramesProduct, "frames")
     settings = of_model(task.settings, str(task.args.get("model", task.settings.camera.model)))
     files = feature_files(folder for _, folder in task.fan_in("features"))
 
@@ -31,7 +31,7 @@ def run(task: StageTask) -> StageResult:
 
     fov = float(task.args["fov_deg"])
     lens = start_lens(frames, settings.camera, fov)
-    keyframes = read_keyframes(task.input("motion")).frames if task.has("motion") else range(int(frames["n_search"]))
+    keyframes = read_keyframes(task.input("motion")).frames if task.has("motion") else range(frames.n_search)
     videos = read_frames(task.input("frames")).videos
     spans = choose_spans(keyframes, settings.camera.focal_span, settings.camera.focal_spans, load, videos)
     found = []
@@ -42,5 +42,4 @@ def run(task: StageTask) -> StageResult:
 
         found.append(find_focal(span, lens, settings, load, report))
     task.report(1, 1)
-    lens_of_start = {"fov_deg": fov, "model": settings.camera.model}
-    return StageResult({**lens_of_start, **joined(found), "spans": [asdict(span) for span in found]})
+    return joined(fov, settings.camera.model, found)

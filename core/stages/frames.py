@@ -13,15 +13,16 @@ from core.frames.export import export_frames
 from core.frames.sampling import ChosenFrame, Stretch, choose_frames, clip_interval
 from core.io.annotations import read_detections
 from core.io.frames import image_path, images_folder, write_frames
+from core.products.front import FramesProduct
 from core.roi import crop_of
 from core.scene.frame import Crop, Frame, RunFrames, SourceFrame
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.video.still import find_still, write_still
 from core.video.table import FrameTable, read_tables
 from core.videos import named, naming_video
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> FramesProduct:
     """Write `images/`, `frames.json`, `damaged.json`, `crop.json` and `still.png`.
 
     Raises:
@@ -50,17 +51,15 @@ def run(task: StageTask) -> StageResult:
         flags.append(Flag("still_pixels_masked", Severity.INFO, still.share, 0.0, f"{still.frames} frames compared"))
     write_still(task.out, still.mask if settings.frames.mask_still else np.zeros_like(still.mask))
     write_frames(task.out, frames, crop, damaged)
-    return StageResult(
-        {
-            "n_frames": len(chosen),
-            "n_damaged": len(damaged),
-            "n_search": frames.n_search,
-            "crop": [crop.x0, crop.y0, crop.x1, crop.y1],
-            "source_width": crop.source_width,
-            "source_height": crop.source_height,
-            "still_share": round(still.share, 6),
-            "flags": [flag.to_dict() for flag in flags],
-        }
+    return FramesProduct(
+        n_frames=len(chosen),
+        n_damaged=len(damaged),
+        n_search=frames.n_search,
+        crop=(crop.x0, crop.y0, crop.x1, crop.y1),
+        source_width=crop.source_width,
+        source_height=crop.source_height,
+        still_share=round(still.share, 6),
+        flags=tuple(flags),
     )
 
 

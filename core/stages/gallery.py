@@ -20,10 +20,11 @@ from core.io.sparse import read_poses
 from core.io.surface import defect_mesh
 from core.io.timeline import read_defects, read_events
 from core.outputs import ROW_MAP
+from core.products.surface import GalleryProduct
 from core.render import Renderer
 from core.report.load import join_detections
 from core.scene.frame import SourceFrame
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.surface.ply import read_mesh
 from core.task_key import stage_of
 from core.video.factory import reopen_video
@@ -36,8 +37,8 @@ MIN_SUPPORT = 0.5
 """Surface below this support is drawn but does not decide what a picture is framed on."""
 
 
-def run(task: StageTask) -> StageResult:
-    """Write the page, a picture per chosen frame and per best frame, two renderings. Facts: n_images, n_frames."""
+def run(task: StageTask) -> GalleryProduct:
+    """Write the page, a picture per chosen frame and per best frame, two renderings."""
     settings = task.settings.gallery
     timelines = [folder for key, folder in sorted(task.inputs.items()) if stage_of(key) == "timeline"]
     rows = join_detections([read_rows(folder) for folder in timelines])
@@ -62,7 +63,7 @@ def run(task: StageTask) -> StageResult:
     row_map = drawn.read_text(encoding="utf-8") if drawn.is_file() else ""
     page = gallery_page(chosen, len(frames), rows, defects, colors, evidence, len(task.recordings), row_map)
     (task.out / "index.html").write_text(page, encoding="utf-8", newline="\n")
-    return StageResult({"n_images": len(chosen), "n_frames": len(frames)})
+    return GalleryProduct(n_images=len(chosen), n_frames=len(frames))
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,12 @@ from core.dense import cuda
 from core.dense.geometric import GeometricFilter
 from core.dense.maps import DenseScene, DepthMap, map_path, map_paths, open_scene, write_map
 from core.dense.views import DenseView
-from core.stage import StageResult, StageTask
+from core.products.surface import DepthProduct
+from core.stage import StageTask
 
 
-def run(task: StageTask) -> StageResult:
-    """Write ``NAME.npz`` of views [start, end); facts n_views, valid_share, method."""
+def run(task: StageTask) -> DepthProduct:
+    """Write ``NAME.npz`` of views [start, end)."""
     scene = open_scene(task.input("undistort"))
     views = scene.views[int(task.args["start"]) : int(task.args["end"])]
     paths = map_paths(folder for _, folder in task.fan_in("depth"))
@@ -26,7 +27,7 @@ def run(task: StageTask) -> StageResult:
         write_map(map_path(task.out, name), found)
         shares.append(found.valid_share)
     share = round(sum(shares) / max(1, len(shares)), 4)
-    return StageResult({"n_views": len(shares), "valid_share": share, "method": method})
+    return DepthProduct(n_views=len(shares), valid_share=share, method=method)
 
 
 def _on_cpu(

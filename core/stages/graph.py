@@ -7,11 +7,12 @@ import numpy as np
 from core.features.io import feature_files, read_features
 from core.io.frames import read_frames
 from core.matching.bridges import select
-from core.stage import StageResult, StageTask
+from core.products.front import GraphProduct
+from core.stage import StageTask
 from core.verification import read_camera
 from core.viewgraph import (
     database_of,
-    graph_facts,
+    graph_counts,
     join_tables,
     read_dropped,
     read_pairs,
@@ -20,7 +21,7 @@ from core.viewgraph import (
 )
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> GraphProduct:
     """Write ``graph.npz`` and ``database.db`` over all frames."""
     folders = [folder for _, folder in task.fan_in("matches")]
     if "bridge" in task.inputs:
@@ -37,4 +38,4 @@ def run(task: StageTask) -> StageResult:
     keypoints = (read_features(files[index]).keypoints for index in range(n_frames))
     write_database(database_of(task.out), camera, keypoints, table)
     task.report(1, 1)
-    return StageResult(graph_facts(table, n_frames))
+    return GraphProduct(**graph_counts(table, n_frames))

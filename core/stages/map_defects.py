@@ -15,11 +15,12 @@ from core.mapping.load import matches_of_graph, open_depth_maps, open_mapping_sc
 from core.mapping.scene import Scene
 from core.mapping.support import SparseModel, boxes_by_frame, read_sparse_model
 from core.mapping.surface_rules import SurfacePlacing
+from core.products.surface import PlacesProduct
 from core.scene.case import GRAPHS
 from core.scene.detection import DetectionRow, Outcome, outcome_counts
 from core.scene.frame import RunFrames
 from core.scene.methods import Placing, Support
-from core.stage import Facts, StageResult, StageTask
+from core.stage import StageTask
 from core.surface.ply import Mesh, read_mesh, write_cloud
 from core.thesis.placing import ThesisPlacing
 from core.video.table import read_infos
@@ -30,16 +31,16 @@ def world_comments(task: StageTask) -> tuple[str, ...]:
     return (f"world frame of sparse model {task.submodel} (COLMAP)", "unit: model")
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> PlacesProduct:
     """Place all detections by the rules that `mapping.method` names.
 
-    Writes the files that docs/stage-results.md names. Facts: counts by outcome and reason, support counts.
+    Writes the files that docs/stage-results.md names.
     """
     detections = read_detections(task.input("annotations"))
     placed = _placing(task).place(detections, task.out)
     unique = _write_support_points(task, placed.support)
     task.report(4, 4, "detections placed")
-    return StageResult(_facts(placed.rows, unique))
+    return _product(placed.rows, unique)
 
 
 def _placing(task: StageTask) -> Placing:
@@ -105,13 +106,14 @@ def _write_support_points(task: StageTask, support: Support) -> int:
     return len(first)
 
 
-def _facts(rows: Sequence[DetectionRow], unique: int) -> Facts:
-    counts = [row.support_points for row in rows if row.outcome == Outcome.MAPPED]
-    return {
-        "n_detections": len(rows),
-        **outcome_counts(rows),
-        "support_min": min(counts, default=None),
-        "support_mean": round(sum(counts) / len(counts), 4) if counts else None,
-        "support_max": max(counts, default=None),
-        "unique_support_points": unique,
-    }
+def _product(rows: Sequence[DetectionRow], unique: int) -> PlacesProduct:
+    rows_by, counts = outcome_counts(rows), [row.support_points for row in rows if row.outcome == Outcome.MAPPED]
+    return PlacesProduct(
+        n_detections=len(rows),
+        outcomes=rows_by["outcomes"],
+        reasons=rows_by["reasons"],
+        support_min=min(counts, default=None),
+        support_mean=round(sum(counts) / len(counts), 4) if counts else None,
+        support_max=max(counts, default=None),
+        unique_support_points=unique,
+    )

@@ -12,12 +12,13 @@ from core.matched_pair import MatchedPair
 from core.matching.auto import PairMatcher, RematchPolicy
 from core.matching.keyframes import keyframe_pairs, read_keyframes
 from core.matching.pairs import match_pairs, pairs_of_chunk
-from core.stage import StageResult, StageTask
+from core.products.front import MatchesProduct
+from core.stage import StageTask
 from core.verification import Verifier, read_camera
-from core.viewgraph import make_table, table_facts, write_pairs
+from core.viewgraph import make_table, table_counts, write_pairs
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> MatchesProduct:
     """Match and verify the pairs whose first frame lies in [start, end)."""
     torch.set_num_threads(task.threads)
     pairs = pairs_of_chunk(_all_pairs(task), int(task.args["start"]), int(task.args["end"]))
@@ -25,7 +26,7 @@ def run(task: StageTask) -> StageResult:
     table = make_table(pairs, match_all(task, pairs, RematchPolicy(n_search)))
     write_pairs(task.out, table)
     task.report(1, 1)
-    return StageResult(dict(table_facts(table)))
+    return MatchesProduct(**table_counts(table))
 
 
 def match_all(

@@ -10,21 +10,22 @@ import torch
 from core.features.io import FrameFeatures, feature_files, read_features, strongest
 from core.io.frames import read_frames
 from core.matching.keyframes import KEYPOINTS, choose_keyframes, picture_motion, write_keyframes
-from core.stage import StageResult, StageTask
+from core.products.front import FramesProduct, MotionProduct
+from core.stage import StageTask
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> MotionProduct:
     """Write ``keyframes.json``: frames between which the picture moved by a useful share of its width."""
     torch.set_num_threads(task.threads)
-    frames = task.facts["frames"]
-    n_search = int(frames["n_search"])
+    frames = task.products.of(FramesProduct, "frames")
+    n_search = frames.n_search
     files = feature_files(folder for _, folder in task.fan_in("features"))
 
     @lru_cache(maxsize=256)
     def load(index: int) -> FrameFeatures:
         return strongest(read_features(files[index]), KEYPOINTS)
 
-    x0, _, x1, _ = (int(value) for value in frames["crop"])
+    x0, _, x1, _ = frames.crop
     motion = picture_motion(x1 - x0, load)
 
     videos = read_frames(task.input("frames")).videos
@@ -38,10 +39,8 @@ def run(task: StageTask) -> StageResult:
     write_keyframes(task.out, found)
     task.report(1, 1)
     per_frame = found.motion_per_frame
-    return StageResult(
-        {
-            "n_keyframes": len(found.frames),
-            "median_step": float(np.median(np.diff(found.frames))) if len(found.frames) > 1 else 0.0,
-            "motion_per_frame": None if per_frame is None else round(per_frame, 6),
-        }
+    return MotionProduct(
+        n_keyframes=len(found.frames),
+        median_step=float(np.median(np.diff(found.frames))) if len(found.frames) > 1 else 0.0,
+        motion_per_frame=None if per_frame is None else round(per_frame, 6),
     )

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from core.io.annotations import read_detections
 from core.io.frames import read_damaged, read_frames
+from core.products.front import PicturesProduct
 from core.scene.frame import RunFrames, SourceFrame
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.video.factory import reopen_video
 from core.video.shown import shown_frames
 from core.video.table import read_infos
@@ -15,13 +16,13 @@ from core.videos import named
 from core.viewer.pictures import U8, drawn_detections, write_pictures
 
 
-def run(task: StageTask) -> StageResult:
-    """Write `frames/`, `full/`, `sprite.jpg` and `pictures.json`. Facts: n_pictures."""
+def run(task: StageTask) -> PicturesProduct:
+    """Write `frames/`, `full/`, `sprite.jpg` and `pictures.json`."""
     folder = task.input("frames")
     frames = read_frames(folder)
     detections = drawn_detections(read_detections(task.input("annotations")), frames)
     made = write_pictures(task.out, _decoded(task, frames), detections, read_damaged(folder))
-    return StageResult({"n_pictures": len(made.scales)})
+    return PicturesProduct(n_pictures=len(made.scales))
 
 
 def _decoded(task: StageTask, frames: RunFrames) -> Iterator[tuple[int, U8]]:

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.flags import Flag, Severity
-from core.stage import Facts, StageResult, StageTask
+from core.products.front import ProbeProduct, VideoLength
+from core.stage import StageTask
 from core.video.probe import probe_video
 from core.video.table import RATE_FROM, FrameTable, VideoInfo, colon_text, listed, rational_text
 from core.videos import folder_of_video, named, naming_video, require_one_size
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> ProbeProduct:
     """Write `video.json` and `table.csv` of every video; `BadInput` when one cannot be used, or their sizes differ."""
     infos: list[VideoInfo] = []
     for video in range(len(task.recordings)):
@@ -23,7 +24,7 @@ def run(task: StageTask) -> StageResult:
         table.write(folder)
         infos.append(table.info)
         require_one_size([(info.width, info.height) for info in infos])
-    return StageResult(_facts(infos))
+    return _product(infos)
 
 
 def _probe(task: StageTask, video: int) -> FrameTable:
@@ -43,25 +44,24 @@ def _probe(task: StageTask, video: int) -> FrameTable:
     )
 
 
-def _facts(infos: Sequence[VideoInfo]) -> Facts:
+def _product(infos: Sequence[VideoInfo]) -> ProbeProduct:
     """Of all videos together, and of each where there are several."""
     total, first = len(infos), infos[0]
-    facts: Facts = {
-        "n_frames": sum(info.n_frames for info in infos),
-        "width": first.width,
-        "height": first.height,
-        "average_rate": rational_text(first.average_rate),
-        "duration_s": sum(info.duration_s for info in infos),
-        "truncated": any(info.truncated for info in infos),
-        "flags": [
-            replace(flag, where=named(flag.where, video, total)).to_dict()
+    videos = tuple(VideoLength(n_frames=info.n_frames, duration_s=info.duration_s) for info in infos)
+    return ProbeProduct(
+        n_frames=sum(info.n_frames for info in infos),
+        width=first.width,
+        height=first.height,
+        average_rate=rational_text(first.average_rate),
+        duration_s=sum(info.duration_s for info in infos),
+        truncated=any(info.truncated for info in infos),
+        flags=tuple(
+            replace(flag, where=named(flag.where, video, total))
             for video, info in enumerate(infos)
             for flag in flags_of(info)
-        ],
-    }
-    if total > 1:
-        facts["videos"] = [{"n_frames": info.n_frames, "duration_s": info.duration_s} for info in infos]
-    return facts
+        ),
+        videos=videos if total > 1 else None,
+    )
 
 
 def flags_of(info: VideoInfo) -> list[Flag]:

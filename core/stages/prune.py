@@ -8,12 +8,13 @@ from core.checks.parts import prune
 from core.io.frames import read_frames
 from core.io.sparse import read_model
 from core.matching.jumps import positions
+from core.products.search import PruneProduct
 from core.sparse import view_graph
-from core.stage import StageResult, StageTask
-from core.viewgraph import database_of, graph_facts, read_graph, write_database, write_graph
+from core.stage import StageTask
+from core.viewgraph import database_of, graph_counts, read_graph, write_database, write_graph
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> PruneProduct:
     """Write ``graph.npz`` and ``database.db`` as stage `graph` does; what follows after a rejection reads these."""
     frames = read_frames(task.input("frames"))
     graph = task.input("graph")
@@ -24,11 +25,9 @@ def run(task: StageTask) -> StageResult:
     keypoints = (xy.astype(np.float32) for xy in known.keypoints)
     write_database(database_of(task.out), known.camera, keypoints, found.table)
     task.report(1, 1, f"{len(found.parts)} parts")
-    return StageResult(
-        {
-            **graph_facts(found.table, len(frames)),
-            "doubted": found.n_rejected,
-            "cuts": [[cut, cut + 1] for cut in found.cuts],
-            "parts": [list(part) for part in found.parts],
-        }
+    return PruneProduct(
+        **graph_counts(found.table, len(frames)),
+        doubted=found.n_rejected,
+        cuts=tuple((cut, cut + 1) for cut in found.cuts),
+        parts=tuple(found.parts),
     )

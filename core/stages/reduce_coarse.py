@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from core.products.search import ChoiceProduct
 from core.scene.case import CaseKind
 from core.sparse.reduce import candidates_of, reduce_cases
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> ChoiceProduct:
     """Rank the coarse cases; `NoReconstruction` when none has a model."""
-    cases = candidates_of(task.facts, CaseKind.COARSE)
+    cases = candidates_of(task.products, CaseKind.COARSE)
     task.report(1, 1, f"{len(cases)} cases ranked")
-    return StageResult(reduce_cases(cases, task.settings.model.veto))
+    return reduce_cases(cases, task.settings.model.veto)

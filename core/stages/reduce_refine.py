@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from core.products.search import BestCase, RefinedProduct
 from core.scene.case import CaseKind
 from core.sparse.reduce import candidates_of, find_candidate, reduce_refined
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.stages.choice import keep_winner, with_verified
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> RefinedProduct:
     """Rank the refined cases against the best coarse one and keep the winner's model."""
-    best = find_candidate(candidates_of(task.facts, CaseKind.COARSE), str(task.facts["reduce_coarse"]["best"]))
-    cases = [best, *candidates_of(task.facts, CaseKind.REFINE)]
+    chosen = task.products.of(BestCase, "reduce_coarse")
+    best = find_candidate(candidates_of(task.products, CaseKind.COARSE), chosen.best)
+    cases = [best, *candidates_of(task.products, CaseKind.REFINE)]
     if task.settings.model.prefer_verified:
         cases = with_verified(task, cases)
-    facts = reduce_refined(cases[0], cases[1:], task.settings.model.veto)
-    keep_winner(task, facts)
+    choice = reduce_refined(cases[0], cases[1:], task.settings.model.veto)
+    keep_winner(task, choice)
     task.report(1, 1, f"{len(cases) - 1} refined cases ranked")
-    return StageResult(facts)
+    return choice

@@ -7,15 +7,16 @@ from numpy.typing import NDArray
 
 from core.errors import NoReconstruction
 from core.matched_pair import MatchedPair
+from core.products.front import FocalProduct, FramesProduct
+from core.products.search import NoPartProduct, ReverifyProduct
 from core.sparse import view_graph
 from core.sparse.lens import choose_lens, of_model
-from core.stage import StageResult, StageTask
-from core.task_key import parts_of
+from core.stage import StageTask
 from core.verification import Verifier, read_camera, write_camera
 from core.viewgraph import (
     PairTable,
     database_of,
-    graph_facts,
+    graph_counts,
     make_table,
     read_graph,
     write_database,
@@ -23,21 +24,21 @@ from core.viewgraph import (
 )
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> ReverifyProduct:
     """Choose the lens of the perspective starts and verify again by it what was verified by the fisheye.
 
     Only the inliers of each pair are asked again: a fisheye of any focal length explains nearly all that a perspective
     lens does between two views, and the matchers are what costs. `NoReconstruction` when no start found a lens.
     """
     settings = of_model(task.settings, str(task.args["model"]))
-    starts = [task.facts[key] for key in parts_of(task.facts, "focal")]
-    lens = choose_lens(task.facts["frames"], settings.camera, starts)
-    if lens["focal_from"] != "estimated":
-        why = task.facts["reduce_parts"]["why"]
-        raise NoReconstruction(f"{why}; no perspective lens was found either ({lens['reason']})", where="search")
-    write_camera(task.out, lens)
+    frames, starts = task.products.of(FramesProduct, "frames"), task.products.parts(FocalProduct, "focal")
+    lens = choose_lens(frames, settings.camera, starts)
+    if lens.focal_from != "estimated":
+        why = task.products.of(NoPartProduct, "reduce_parts").why
+        raise NoReconstruction(f"{why}; no perspective lens was found either ({lens.reason})", where="search")
+    write_camera(task.out, lens.facts)
     camera = read_camera(task.out)
-    graph, n_frames = task.input("graph"), int(task.facts["frames"]["n_frames"])
+    graph, n_frames = task.input("graph"), frames.n_frames
     keypoints = [xy.astype(np.float32) for xy in view_graph.read_frames(database_of(graph), 0, n_frames).keypoints]
     verifier = Verifier(camera, settings.verification, settings.seed)
     before, matched = read_graph(graph), list[MatchedPair]()
@@ -48,8 +49,8 @@ def run(task: StageTask) -> StageResult:
     table = make_table([(first, second) for first, second in before.pairs.tolist()], matched)
     write_graph(task.out, table)
     write_database(database_of(task.out), camera, keypoints, table)
-    task.report(1, 1, f"focal length {lens['params'][0]:.1f} px")
-    return StageResult({**lens, **graph_facts(table, n_frames)})
+    task.report(1, 1, f"focal length {lens.params[0]:.1f} px")
+    return ReverifyProduct(**lens.__dict__, **graph_counts(table, n_frames))
 
 
 def _inliers(table: PairTable, row: int) -> NDArray[np.uint32]:

@@ -14,6 +14,8 @@ from core.mapping.coloring import blend
 from core.mapping.scene import oriented
 from core.measure.scale import find_scale
 from core.outputs import ROW, ROW_MAP
+from core.products.search import ExtendProduct
+from core.products.surface import TimelineProduct
 from core.row.files import read_blades
 from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
@@ -22,7 +24,7 @@ from core.row.tables import RowOfModel, events_on_row, scale_of_row
 from core.scene.methods import Grouped, Grouping
 from core.scene.size import scale_fields
 from core.scene.views import Views, views_of
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.stages.map_defects import open_scene_of, world_comments
 from core.surface.colored_glb import write_glb
 from core.surface.ply import Mesh, read_mesh, write_mesh
@@ -31,10 +33,10 @@ from core.thesis.grouping import ThesisGrouping
 from core.timeline.grouping import Start, SurfaceGrouping
 
 
-def run(task: StageTask) -> StageResult:
+def run(task: StageTask) -> TimelineProduct:
     """Tell defects apart by the rules that `mapping.method` names; write tables and coloured surfaces.
 
-    Writes the files that docs/stage-results.md names. Facts: n_events, n_defects, and what the rules count.
+    Writes the files that docs/stage-results.md names.
     """
     mesh = read_mesh(supported_mesh(task.input("mesh")))
     views = views_of(read_model(task.input("extend")))
@@ -57,10 +59,10 @@ def run(task: StageTask) -> StageResult:
     write_glb(defect_glb(task.out), colored, found.scale)
     write_cameras(task.out, views)
     task.report(4, 4, "timeline written")
-    return StageResult(dict(found.facts))
+    return found.product
 
 
-def _on_row(found: Grouped, where: RowOfModel) -> tuple[Grouped, list[JsonObject]]:
+def _on_row(found: Grouped[TimelineProduct], where: RowOfModel) -> tuple[Grouped[TimelineProduct], list[JsonObject]]:
     """What was found with the columns of the row, and the findings of ``row.json``."""
     sigmas = {int(one["id"]): one["position_sigma"] for one in found.confidences}
     records, findings = where.records(found.defects)
@@ -68,12 +70,12 @@ def _on_row(found: Grouped, where: RowOfModel) -> tuple[Grouped, list[JsonObject
     return replace(found, rows=tuple(rows), events=tuple(events), defects=tuple(records)), findings
 
 
-def _grouping(task: StageTask, mesh: Mesh, views: Views, row: BladeRow | NoRow) -> Grouping:
+def _grouping(task: StageTask, mesh: Mesh, views: Views, row: BladeRow | NoRow) -> Grouping[TimelineProduct]:
     placed = task.input("map_defects")
     if task.settings.mapping.method == "thesis":
         return ThesisGrouping(placed, mesh, views, task.settings.timeline, task.report)
     scene, frames = open_scene_of(task)
-    start = Start.after(task.facts, task.submodel)
+    start = Start.after(task.products, task.submodel)
     detections = {one.id: one for one in read_detections(task.input("annotations"))}
     of_row = scale_of_row(row, task.settings.row)
     scale = find_scale(task.settings.scale, scene, frames, [] if of_row is None else [of_row])
@@ -85,5 +87,5 @@ def _grouping(task: StageTask, mesh: Mesh, views: Views, row: BladeRow | NoRow) 
 
 def _warnings(task: StageTask) -> int:
     """Warnings of the checks about the model that the places lie on."""
-    checks = task.facts.get(key_of("extend", task.submodel), {}).get("checks", ())
-    return len({check["code"] for check in checks if check["severity"] != Severity.INFO})
+    checks = task.products.of(ExtendProduct, key_of("extend", task.submodel)).checks
+    return len({check.code for check in checks if check.severity != Severity.INFO})

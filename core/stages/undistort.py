@@ -13,8 +13,10 @@ from core.dense.views import plan_views, sparse_views, write_views
 from core.errors import StageFailed
 from core.io.frames import images_folder
 from core.io.sparse import read_model
+from core.products.search import SubmodelsProduct
+from core.products.surface import UndistortProduct
 from core.settings.groups import DenseSettings
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 
 JPEG_QUALITY = 97
 
@@ -23,8 +25,8 @@ MIN_SUBMODEL_VIEWS = 10
 """Depth maps of a further model, at least."""
 
 
-def run(task: StageTask) -> StageResult:
-    """Write ``images/``, ``mask.png``, ``sparse/`` and ``views.json``; facts n_views, width, height, focal_px."""
+def run(task: StageTask) -> UndistortProduct:
+    """Write ``images/``, ``mask.png``, ``sparse/`` and ``views.json``."""
     settings = task.settings.dense
     resolve_method(settings)  # a demand that cannot be met is refused before the work, not after
     model = read_model(task.input("extend"))
@@ -53,14 +55,12 @@ def run(task: StageTask) -> StageResult:
         )
     write_mask(task.out, mapping.inside)
     write_views(task.out, plan)
-    return StageResult(
-        {
-            "n_views": len(plan),
-            "n_images": len(needed),
-            "width": pinhole.width,
-            "height": pinhole.height,
-            "focal_px": round(pinhole.focal_px, 3),
-        }
+    return UndistortProduct(
+        n_views=len(plan),
+        n_images=len(needed),
+        width=pinhole.width,
+        height=pinhole.height,
+        focal_px=round(pinhole.focal_px, 3),
     )
 
 
@@ -69,6 +69,7 @@ def _of_its_share(task: StageTask) -> DenseSettings:
     settings = task.settings.dense
     if not task.submodel or not settings.views:
         return settings
-    counts = [int(task.facts["pieces"]["registered_first"]), *map(int, task.facts["pieces"]["registered_images"])]
+    found = task.products.of(SubmodelsProduct, "pieces")
+    counts = [found.registered_first, *found.registered_images]
     share = counts[task.submodel] / sum(counts)
     return settings.model_copy(update={"views": max(MIN_SUBMODEL_VIEWS, round(share * settings.views))})

@@ -10,17 +10,18 @@ from core.io.sparse import read_model
 from core.io.surface import defect_mesh, supported_mesh
 from core.io.timeline import read_defects
 from core.outputs import SURFACE_GLB
+from core.products.surface import ViewerProduct
 from core.scene.defect import DefectRecord
 from core.scene.frame import image_name
 from core.scene.views import views_of
-from core.stage import StageResult, StageTask
+from core.stage import StageTask
 from core.surface.ply import read_mesh
 from core.viewer.build import with_blades, write_scene
 from core.viewer.scene import FRAMES, FULL, best_frames
 
 
-def run(task: StageTask) -> StageResult:
-    """Write `surface.glb`, `scene.json`, `frames/` and `surface/`. Facts: n_faces, glb_bytes."""
+def run(task: StageTask) -> ViewerProduct:
+    """Write `surface.glb`, `scene.json`, `frames/` and `surface/`."""
     views = views_of(read_model(task.input("extend")))
     mesh = with_blades(read_mesh(supported_mesh(task.input("mesh"))), read_mesh(defect_mesh(task.input("timeline"))))
     records = read_defects(task.input("timeline"))
@@ -29,7 +30,7 @@ def run(task: StageTask) -> StageResult:
     task.report(2, 5, "thinning out the surface")
     scene = write_scene(task.out, mesh, views, read_crop(task.input("frames")), records, full, task.threads)
     task.report(5, 5, "surface of the page written")
-    return StageResult({"n_faces": scene.surface.faces, "glb_bytes": (task.out / SURFACE_GLB).stat().st_size})
+    return ViewerProduct(n_faces=scene.surface.faces, glb_bytes=(task.out / SURFACE_GLB).stat().st_size)
 
 
 def _keep_best(task: StageTask, records: Iterable[DefectRecord]) -> list[int]:

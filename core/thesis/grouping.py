@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core.io.annotations import read_rows
 from core.mapping.surface import Surface
+from core.products.surface import TimelineProduct
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow, Extent, Persistence, Sighting
 from core.scene.detection import DetectionRow, Outcome, leading_label
 from core.scene.methods import Grouped, Report
@@ -220,7 +221,7 @@ class ThesisGrouping:
     settings: TimelineSettings
     report: Report
 
-    def group(self) -> Grouped:
+    def group(self) -> Grouped[TimelineProduct]:
         """Cluster the mapped detections and find the views of every cluster."""
         rows = read_rows(self.folder)
         self.report(1, 4, "grouping detections")
@@ -240,7 +241,7 @@ class ThesisGrouping:
             confidences=(),
             weight=coloring.weight,
             vertex_defect=vertex_defect,
-            facts={"n_events": len(events), "n_defects": len(clusters), "cluster_radius_su": radius},
+            product=TimelineProduct(n_events=len(events), n_defects=len(clusters), cluster_radius_su=radius),
         )
 
     def _views_of(

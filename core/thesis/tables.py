@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from core.outputs import FUSED, SURFACE
+from core.products.contract import Products
+from core.products.front import AnnotationsProduct, FramesProduct
+from core.products.search import ExtendProduct
+from core.products.surface import FuseProduct, MeshProduct
 from core.scene.case import CaseKind, CaseRow
 from core.scene.detection import DetectionRow
 from core.settings import Settings
-from core.stage import Facts
 from core.thesis.search import best_case, refinement_gain, spread
-
-FactsOf = Callable[[str], Facts]
-"""Facts of a finished task by its key; empty for one that is not finished."""
 
 
 def thesis_tables(
-    facts: FactsOf,
+    done: Products,
     settings: Settings,
     selected: str,
     cases: Sequence[CaseRow],
@@ -28,7 +28,7 @@ def thesis_tables(
     """All tables by their number.
 
     Args:
-        facts: of the run's tasks.
+        done: products of the run's tasks.
         settings: of the run.
         selected: name of the case whose model went on; empty without one.
         cases: that ended.
@@ -38,25 +38,26 @@ def thesis_tables(
         n_events: of the timeline.
     """
     return {
-        "3.2": table_3_2(facts, selected),
+        "3.2": table_3_2(done, selected),
         "3.3": table_3_3(selected, cases),
-        "3.4": table_3_4(facts, detections, funnel, support, n_events),
-        "3.5": table_3_5(facts, settings, selected, cases),
+        "3.4": table_3_4(done, detections, funnel, support, n_events),
+        "3.5": table_3_5(done, settings, selected, cases),
     }
 
 
-def table_3_2(facts: FactsOf, selected: str) -> list[dict[str, object]]:
+def table_3_2(done: Products, selected: str) -> list[dict[str, object]]:
     """Selected reconstruction and dense surface; null = not reached."""
-    sparse, fused, mesh = facts("extend"), facts("fuse"), facts("mesh")
+    sparse, fused = done.find(ExtendProduct, "extend"), done.find(FuseProduct, "fuse")
+    mesh = done.find(MeshProduct, "mesh")
     values = (
         ("selected_case", selected or None),
-        ("registered_images", sparse.get("registered_images")),
-        ("points3D", sparse.get("points3D")),
-        ("mean_reprojection_error_px", sparse.get("mean_reprojection_error_px")),
-        ("median_reprojection_error_px", sparse.get("median_reprojection_error_px")),
-        ("fused_points", fused.get("n_points")),
-        ("mesh_vertices", mesh.get("n_vertices")),
-        ("mesh_faces", mesh.get("n_faces")),
+        ("registered_images", sparse.registered_images if sparse else None),
+        ("points3D", sparse.points3D if sparse else None),
+        ("mean_reprojection_error_px", sparse.mean_reprojection_error_px if sparse else None),
+        ("median_reprojection_error_px", sparse.median_reprojection_error_px if sparse else None),
+        ("fused_points", fused.n_points if fused else None),
+        ("mesh_vertices", mesh.n_vertices if mesh else None),
+        ("mesh_faces", mesh.n_faces if mesh else None),
         ("fused_point_cloud", FUSED if fused else None),
         ("mesh", SURFACE if mesh else None),
     )
@@ -90,7 +91,7 @@ def table_3_3(selected: str, cases: Sequence[CaseRow]) -> list[dict[str, object]
 
 
 def table_3_4(
-    facts: FactsOf,
+    done: Products,
     rows: Sequence[DetectionRow],
     funnel: Mapping[str, int | None],
     support: Mapping[str, float | None],
@@ -98,9 +99,10 @@ def table_3_4(
 ) -> list[dict[str, object]]:
     """The transfer from annotations to geometry, step by step."""
     matched = int(funnel["registered"] or 0)
+    annotations = done.find(AnnotationsProduct, "annotations")
     with_support = sum(row.support_points > 0 for row in rows)
     values = (
-        ("timestamp_entries", facts("annotations").get("n_keys")),
+        ("timestamp_entries", annotations.n_keys if annotations else None),
         ("timestamps_with_detections", len({row.key for row in rows})),
         ("input_detections", len(rows)),
         ("time_matched_detections", matched),
@@ -113,22 +115,22 @@ def table_3_4(
     return [{"stage": name, "count": value} for name, value in values]
 
 
-def table_3_5(facts: FactsOf, settings: Settings, selected: str, cases: Sequence[CaseRow]) -> list[dict[str, object]]:
+def table_3_5(done: Products, settings: Settings, selected: str, cases: Sequence[CaseRow]) -> list[dict[str, object]]:
     """The design choices and the evidence this run gives for each."""
-    frames, sparse = facts("frames"), facts("extend")
+    frames, sparse = done.find(FramesProduct, "frames"), done.find(ExtendProduct, "extend")
     coarse, gain = spread(cases, CaseKind.COARSE), refinement_gain(cases)
     preprocessing = {
-        "frames": frames.get("n_search"),
+        "frames": frames.n_search if frames else None,
         "clip_start_s": settings.frames.clip_start_s,
         "clip_end_s": settings.frames.clip_end_s,
         "roi": [settings.roi.x0, settings.roi.y0, settings.roi.x1, settings.roi.y1],
-        "crop_px": frames.get("crop"),
+        "crop_px": list(frames.crop) if frames else None,
     }
     consistency = {
         "selected_case": selected or None,
         "models": 1 if sparse else 0,
         "registered_images_of_case": _images_of(cases, selected),
-        "registered_images_of_model": sparse.get("registered_images"),
+        "registered_images_of_model": sparse.registered_images if sparse else None,
     }
     return [
         {"choice": "segmented_reconstruction", "evidence": coarse},

@@ -15,13 +15,14 @@ from core.mapping.scene import Scene
 from core.measure.scale import FoundScale
 from core.measure.sizes import Sizes, measure_defects
 from core.outputs import evidence_name
+from core.products.contract import Products
+from core.products.surface import TimelineProduct
 from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import Detection, DetectionRow
 from core.scene.frame import RunFrames
 from core.scene.methods import Grouped, Report
 from core.scene.size import Scale, Size, scale_fields
 from core.settings.groups import MappingSettings
-from core.stage import Facts
 from core.surface.ply import Mesh
 from core.task_key import stage_of, submodel_of
 from core.timeline.defects import Found, defect_records, event_rows, find_defects
@@ -38,10 +39,11 @@ class Start:
     event: int = 0
 
     @classmethod
-    def after(cls, facts: Mapping[str, Facts], submodel: int) -> Start:
-        """Behind the timelines of all models before `piece`, whose facts are given by task key."""
-        before = [own for key, own in facts.items() if stage_of(key) == "timeline" and submodel_of(key) < submodel]
-        return cls(sum(int(own["n_defects"]) for own in before), sum(int(own["n_events"]) for own in before))
+    def after(cls, products: Products, submodel: int) -> Start:
+        """Behind the timelines of all models before `submodel`."""
+        keys = (key for key in products if stage_of(key) == "timeline" and submodel_of(key) < submodel)
+        before = products.every(TimelineProduct, keys)
+        return cls(sum(own.n_defects for own in before), sum(own.n_events for own in before))
 
     def rows(self, rows: Sequence[DetectionRow]) -> list[DetectionRow]:
         """Detections."""
@@ -89,7 +91,7 @@ class SurfaceGrouping:
     threads: int
     report: Report
 
-    def group(self) -> Grouped:
+    def group(self) -> Grouped[TimelineProduct]:
         """Instances, visits and confidences."""
         observations = read_observations(self.folder)
         self.report(1, 4, "telling defects apart")
@@ -109,14 +111,14 @@ class SurfaceGrouping:
             confidences=tuple(parts_rows(found.observations)),
             weight=weight,
             vertex_defect=self.start.vertices(vertex_defect),
-            facts={
-                "n_events": len(events),
-                "n_defects": len(found.defects),
-                "n_unconfirmed": found.unconfirmed,
-                "n_measured": sum(size.length is not None for size in sizes.defects),
-                "scale": scale_fields(self.scale.scale),
-                "flags": [flag.to_dict() for flag in self.scale.flags],
-            },
+            product=TimelineProduct(
+                n_events=len(events),
+                n_defects=len(found.defects),
+                n_unconfirmed=found.unconfirmed,
+                n_measured=sum(size.length is not None for size in sizes.defects),
+                scale=scale_fields(self.scale.scale),
+                flags=tuple(self.scale.flags),
+            ),
             scale=self.scale.scale,
         )
 

@@ -7,33 +7,38 @@ from typing import Any
 
 import numpy as np
 
+from core.products.search import CaseProduct
 from core.report.record import RunRecord, RunTables, TaskRecord
 from core.scene.detection import Detection
 from core.scene.frame import Frame, Role, RunFrames
 from core.settings import make_settings
+from core.stage_specs import STAGES
 from core.states import RunState, TaskState
+from core.task_key import stage_of
 from core.thesis.grouping import cluster_detections, defect_records, event_rows, with_defect_ids
+from tests.core.making_products import facts_of
 from tests.core.making_rows import mapped, unplaced
 
 
 def case(name: str, images: int, points: int, seconds: float = 2.0) -> TaskRecord:
     kind = {"seg": "coarse"}.get(name.split("_")[0], name.split("_")[0])
     start, end = (int(part) for part in name.split("_")[-2:])
-    facts: dict[str, Any] = {
-        "name": name,
-        "kind": kind,
-        "start": start,
-        "end": end,
-        "status": "succeeded" if images else "no_model",
-        "reason": "" if images else "no_initial_pair",
-        "frames": end - start,
-        "models": 1 if images else 0,
-        "registered_images": images,
-        "points3D": points,
-        "mean_reprojection_error_px": 1.2 if images else None,
-        "median_reprojection_error_px": 1.1 if images else None,
-        "start_mode": "scratch",
-    }
+    facts = facts_of(
+        CaseProduct,
+        name=name,
+        kind=kind,
+        start=start,
+        end=end,
+        status="succeeded" if images else "no_model",
+        reason="" if images else "no_initial_pair",
+        frames=end - start,
+        models=1 if images else 0,
+        registered_images=images,
+        points3D=points,
+        mean_reprojection_error_px=1.2 if images else None,
+        median_reprojection_error_px=1.1 if images else None,
+        start_mode="scratch",
+    )
     return TaskRecord(f"{kind}/{name}", TaskState.SUCCEEDED, seconds=seconds, peak_rss_bytes=1000 * images, facts=facts)
 
 
@@ -78,7 +83,8 @@ def _tables() -> RunTables:
 def full_record(preset: str = "default", **options: Any) -> RunRecord:
     """A run that came to its end."""
 
-    def task(key: str, **facts: Any) -> TaskRecord:
+    def task(key: str, **members: Any) -> TaskRecord:
+        facts = facts_of(STAGES[stage_of(key)].product, **members)
         return TaskRecord(key, TaskState.SUCCEEDED, seconds=1.5, peak_rss_bytes=10, facts=facts)
 
     tasks = [

@@ -17,24 +17,28 @@ from types import ModuleType
 
 from core.io.annotations import read_rows, write_rows
 from core.io.timeline import read_defects, read_events, write_timeline
+from core.products.contract import Facts
+from core.products.front import FramesProduct, ProbeProduct
+from core.products.search import ExtendProduct
 from core.report.load import load_tables
 from core.report.record import RunRecord, TaskRecord
 from core.scene.detection import Outcome
 from core.settings import make_settings
-from core.stage import Facts, StageTask
+from core.stage import StageTask
 from core.stages import gallery, map_defects, pictures, timeline, viewer
 from core.states import RunState, TaskState
 from core.surface.ply import write_mesh
 from core.task_key import key_of
 from core.videos import Recording
 from core.viewer.deliver import bundle
+from tests.core.making_products import facts_of
 from tests.core.test_mapping_stages import SETTINGS, plane, sparse_model, write, write_inputs
 from worker.publish import publish
 
 RESULTS = Path(__file__).parents[1] / "data" / "results"
 REGISTERED = {0: [0, 1, 2, 3], 1: [5, 6, 7]}
 """Frames of each model."""
-_FRAME = {"n_frames": 8, "n_search": 8, "crop": [0, 0, 160, 128], "source_width": 160, "source_height": 128}
+_SIZE = {"crop": (0, 0, 160, 128), "source_width": 160, "source_height": 128}
 _VERSIONS = {"bladeatlas": "test"}
 """The real ones would change the files with every release."""
 
@@ -82,7 +86,7 @@ def _model(submodel: int, work: Path, folders: dict[str, Path], facts: dict[str,
     mesh.mkdir()
     write_mesh(mesh / "mesh_poisson.ply", plane(41, 35))
     folders |= {extend.name: extend, mesh.name: mesh}
-    facts |= {extend.name: {"registered_images": len(registered), "checks": []}, mesh.name: {}}
+    facts |= {extend.name: facts_of(ExtendProduct, registered_images=len(registered)), mesh.name: {}}
     for stage in (map_defects, timeline):
         _run(stage, submodel, work, folders, facts)
     _number(folders[key_of("timeline", submodel)], submodel)
@@ -120,7 +124,11 @@ def _begun(work: Path) -> tuple[dict[str, Path], dict[str, Facts]]:
     """Results of the stages before the model, and their facts."""
     write_inputs(work)
     folders = {name: work / name for name in ("probe", "frames", "annotations")}
-    facts: dict[str, Facts] = {"probe": {"n_frames": 8, "duration_s": 0.64}, "frames": dict(_FRAME), "annotations": {}}
+    facts: dict[str, Facts] = {
+        "probe": facts_of(ProbeProduct, n_frames=8, duration_s=0.64),
+        "frames": facts_of(FramesProduct, n_frames=8, n_search=8, **_SIZE),
+        "annotations": {},
+    }
     _run(pictures, 0, work, folders, facts)
     return folders, facts
 
@@ -129,7 +137,7 @@ def _run(stage: ModuleType, submodel: int, work: Path, folders: dict[str, Path],
     key = key_of(stage.__name__.rsplit(".", 1)[-1], submodel)
     out = work / key
     out.mkdir()
-    args = {"submodel": submodel} if submodel else {}
+    args = {"piece": submodel} if submodel else {}
     task = StageTask(key, args, SETTINGS, dict(folders), dict(facts), (Recording(work / "video.mp4"),), out)
     facts[key] = stage.run(task).facts
     folders[key] = out

@@ -11,23 +11,36 @@ import pytest
 
 from core.errors import StageFailed
 from core.graph import expand
+from core.products.contract import Facts
+from core.products.front import CameraProduct, FramesProduct
+from core.products.search import (
+    ChoiceProduct,
+    NoPartProduct,
+    PassedProduct,
+    PruneProduct,
+    RefinedProduct,
+    SubmodelsProduct,
+)
+from core.products.surface import UndistortProduct
 from core.settings import make_settings
-from core.stage import Facts, StageTask
+from core.stage import StageTask
 from core.stage_specs import STAGES
 from core.task_key import stage_of, submodel_of
+from tests.core.making_products import facts_of
 
-FRAMES: dict[str, Facts] = {"frames": {"n_frames": 200, "n_search": 200}}
-CAMERA: dict[str, Facts] = {"camera": {"model": "OPENCV_FISHEYE"}}
-COARSE: Facts = {"best": "seg_000_0000_0180", "start": 0, "end": 180}
+FRAMES: dict[str, Facts] = {"frames": facts_of(FramesProduct, n_frames=200, n_search=200)}
+CAMERA: dict[str, Facts] = {"camera": facts_of(CameraProduct, model="OPENCV_FISHEYE")}
+COARSE = facts_of(ChoiceProduct, best="seg_000_0000_0180", end=180)
 SEARCHED: dict[str, Facts] = {**FRAMES, **CAMERA, "reduce_coarse": COARSE}
-CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": {"vetoed": False}}
-WRONG: Facts = {"vetoed": True, "codes": "bent_model, weak_join", "start": 20, "end": 200}
+CHOSEN: dict[str, Facts] = {**SEARCHED, "reduce_refine": facts_of(RefinedProduct)}
+WRONG = facts_of(RefinedProduct, vetoed=True, codes="bent_model, weak_join", start=20, end=200)
 REJECTED: dict[str, Facts] = {**SEARCHED, "reduce_refine": WRONG}
-PRUNED: dict[str, Facts] = {**REJECTED, "prune": {"parts": [[0, 61], [61, 200]]}}
-PARTED: dict[str, Facts] = {**PRUNED, "reduce_parts": {"best": "section_001_0061_0200"}}
-NO_PART: dict[str, Facts] = {**PRUNED, "reduce_parts": {"best": "", "why": "every model was vetoed"}}
-DENSE: dict[str, Facts] = {**CHOSEN, "undistort": {"n_views": 90}}
-MODELS: dict[str, Facts] = {"undistort": {"n_views": 90}, "pieces": {"n_pieces": 1}}
+PRUNED: dict[str, Facts] = {**REJECTED, "prune": facts_of(PruneProduct, parts=[[0, 61], [61, 200]])}
+PARTED: dict[str, Facts] = {**PRUNED, "reduce_parts": facts_of(PassedProduct, best="section_001_0061_0200")}
+NO_PART: dict[str, Facts] = {**PRUNED, "reduce_parts": facts_of(NoPartProduct, why="every model was vetoed")}
+VIEWS: dict[str, Facts] = {"undistort": facts_of(UndistortProduct, n_views=90)}
+DENSE: dict[str, Facts] = {**CHOSEN, **VIEWS}
+MODELS: dict[str, Facts] = {**VIEWS, "pieces": facts_of(SubmodelsProduct, n_pieces=1)}
 AFTER_REJECTION: dict[str, Facts] = {**PARTED, **MODELS}
 OTHER_LENS: dict[str, Facts] = {**NO_PART, **MODELS}
 
@@ -49,7 +62,7 @@ def keys(facts: Mapping[str, Any], preset: str = "default", options: dict[str, A
 @pytest.mark.parametrize("preset", ["default", "draft", "thesis"])
 def test_every_dependency_comes_before_its_task(facts: dict[str, Any], preset: str) -> None:
     if "reduce_coarse" in facts and preset == "draft":  # its one window is the whole clip
-        facts = {**facts, "reduce_coarse": {"best": "seg_000_0000_0200", "start": 0, "end": 200}}
+        facts = {**facts, "reduce_coarse": facts_of(ChoiceProduct, best="seg_000_0000_0200", end=200)}
     assert keys(facts, preset) == keys(facts, preset)
 
 
@@ -110,7 +123,14 @@ def test_where_the_model_of_the_lens_was_told_no_pinhole_is_tried(model: str) ->
 
 
 def test_the_plan_only_grows() -> None:
-    good: list[dict[str, Facts]] = [{}, FRAMES, SEARCHED, CHOSEN, DENSE, {**DENSE, "pieces": {"n_pieces": 1}}]
+    good: list[dict[str, Facts]] = [
+        {},
+        FRAMES,
+        SEARCHED,
+        CHOSEN,
+        DENSE,
+        {**DENSE, "pieces": facts_of(SubmodelsProduct, n_pieces=1)},
+    ]
     for known in (good, [SEARCHED, REJECTED, PRUNED, PARTED, AFTER_REJECTION], [PRUNED, NO_PART, OTHER_LENS]):
         for before, after in pairwise(known):
             assert set(keys(before)) <= set(keys(after))
@@ -130,7 +150,7 @@ def test_after_a_rejection_every_part_is_a_case_and_all_that_follows_reads_the_p
     assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")
     readers = ("extend", "pieces", "map_defects", "extend@1", "map_defects@1")
     assert all("prune" in tasks[key].depends and "graph" not in tasks[key].depends for key in readers)
-    nothing = {**REJECTED, "prune": {"parts": []}}
+    nothing = {**REJECTED, "prune": facts_of(PruneProduct)}
     assert "reduce_parts" in keys(nothing)  # which then says that there is none
 
 
@@ -167,7 +187,7 @@ def test_where_no_part_passes_a_perspective_lens_is_sought_and_all_that_follows_
 def test_a_lens_that_was_told_or_is_not_to_blame_is_not_sought_anew(options: dict[str, Any], codes: str) -> None:
     facts = {**PRUNED, "reduce_refine": {**WRONG, "codes": codes}}
     if codes == "perspective from the start":
-        facts = {**PRUNED, "camera": {"model": "SIMPLE_RADIAL"}}
+        facts = {**PRUNED, "camera": facts_of(CameraProduct, model="SIMPLE_RADIAL")}
     tasks = {task.key: task for task in expand(make_settings(options=options), facts)}
     assert tasks["reduce_parts"].args == {"another_lens": False}  # it then ends the search
     assert tasks["confirm"].depends == ("frames", "prune", "reduce_parts")
@@ -177,15 +197,17 @@ def test_a_lens_that_was_told_or_is_not_to_blame_is_not_sought_anew(options: dic
 def test_the_gallery_waits_until_the_further_models_are_known() -> None:
     assert "gallery" not in keys(DENSE)
     assert "gallery" in keys(DENSE, "default", {"model.further": 0})
-    assert "gallery" in keys({**DENSE, "pieces": {"n_pieces": 0}})
-    tasks = {task.key: task for task in expand(make_settings(), {**DENSE, "pieces": {"n_pieces": 2}})}
+    assert "gallery" in keys({**DENSE, "pieces": facts_of(SubmodelsProduct, n_pieces=0)})
+    tasks = {
+        task.key: task for task in expand(make_settings(), {**DENSE, "pieces": facts_of(SubmodelsProduct, n_pieces=2)})
+    }
     assert {"timeline", "timeline@1", "timeline@2"} <= set(tasks["gallery"].depends)
     assert tasks["timeline@2"].args == {"piece": 2}
     assert {"timeline", "timeline@1"} <= set(tasks["timeline@2"].depends)
     further = [task for task in tasks.values() if submodel_of(task.key)]
     assert {submodel_of(task.key) for task in further} == {1, 2}
     assert all(task.optional and task.args["piece"] == submodel_of(task.key) for task in further)
-    assert "timeline@1" not in keys({**DENSE, "pieces": {"n_pieces": 0}})
+    assert "timeline@1" not in keys({**DENSE, "pieces": facts_of(SubmodelsProduct, n_pieces=0)})
 
 
 def test_a_task_of_a_further_model_reads_its_own_models_results_first(tmp_path: Path) -> None:

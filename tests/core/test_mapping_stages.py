@@ -18,8 +18,9 @@ import pycolmap
 import pytest
 import trimesh
 
+from core.products.contract import Facts
 from core.settings import Settings, make_settings
-from core.stage import Facts, StageTask
+from core.stage import StageTask
 from core.stages import gallery, map_defects, timeline
 from core.surface.ply import Mesh, read_mesh, write_mesh
 from core.video.probe import probe_video

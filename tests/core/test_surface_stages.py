@@ -20,10 +20,12 @@ from core.gallery.palette import label_colors
 from core.io.annotations import read_rows
 from core.io.timeline import read_defects, read_events
 from core.mapping.observations import read_observations
+from core.products.contract import Facts
+from core.products.search import ExtendProduct
 from core.report.build import build_report, write_tables
 from core.report.record import RunRecord, RunTables, TaskRecord
 from core.settings import make_settings
-from core.stage import Facts, StageTask
+from core.stage import StageTask
 from core.stages import map_defects, timeline
 from core.states import RunState, TaskState
 from core.surface.ply import Mesh, read_mesh, write_cloud, write_mesh
@@ -31,6 +33,7 @@ from core.videos import Recording
 from core.viewgraph import make_table, write_database, write_table
 from tests.core import making_plates as plates
 from tests.core.making_plates import NEAR, detection
+from tests.core.making_products import facts_of
 from tests.core.making_rows import run_frames
 
 A, B = (-0.8, 0.2, NEAR), (-1.4, -0.3, NEAR)
@@ -77,7 +80,8 @@ def run_both(
 ) -> dict[str, Facts]:
     """With warnings of the checks of the model; what the stages report goes to `told`."""
     folders = {path.name: path for path in inputs.iterdir()}
-    facts: dict[str, Facts] = {"extend": {"checks": [Flag(code, Severity.WARNING).to_dict() for code in codes]}}
+    checks = [Flag(code, Severity.WARNING) for code in codes]
+    facts: dict[str, Facts] = {"extend": facts_of(ExtendProduct, checks=checks)}
     for name, stage in (("map_defects", map_defects), ("timeline", timeline)):
         folders[name] = out / name
         folders[name].mkdir(parents=True)

@@ -12,11 +12,11 @@ from core.settings import make_settings
 from core.verification import Verifier
 from core.viewgraph import (
     PairTable,
-    graph_facts,
+    graph_counts,
     join_tables,
     make_table,
     read_table,
-    table_facts,
+    table_counts,
     write_database,
     write_table,
 )
@@ -68,19 +68,19 @@ def test_tables_round_trip_with_the_same_bytes(scene: tuple[list[np.ndarray], li
 
 def test_no_pairs_are_an_empty_graph(tmp_path: Path) -> None:
     table = join_tables([])
-    assert graph_facts(table, 3) == {
+    assert graph_counts(table, 3) == {
         "n_pairs": 0,
         "n_verified": 0,
         "largest_component": 1,
         "median_triangulation_angle_deg": 0.0,
     }
-    assert table_facts(table) == {"n_pairs": 0, "n_verified": 0, "n_lightglue": 0, "n_inliers": 0}
+    assert table_counts(table) == {"n_pairs": 0, "n_verified": 0, "n_lightglue": 0, "n_inliers": 0}
     write_table(tmp_path / "pairs.npz", table)
     assert len(read_table(tmp_path / "pairs.npz").pairs) == 0
 
 
 def test_facts_count_the_component_of_verified_pairs(scene: tuple[list[np.ndarray], list[PairTable]]) -> None:
-    facts = graph_facts(join_tables(scene[1]), N_VIEWS + 2)
+    facts = graph_counts(join_tables(scene[1]), N_VIEWS + 2)
     assert facts["n_verified"] == facts["n_pairs"] == 12
     assert facts["largest_component"] == N_VIEWS
     assert 1 < facts["median_triangulation_angle_deg"] < 10

@@ -11,8 +11,8 @@ from typing import Any
 
 from core.fingerprint import digest_of
 from core.graph import TaskSpec
+from core.products.contract import Facts, Product
 from core.settings import Settings
-from core.stage import Facts
 from core.stage_specs import StageSpec
 from store.graph import Graph
 from store.records import InputFiles, Lease, Result
@@ -29,10 +29,10 @@ def _expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
 
 GRAPH = Graph(
     {
-        "split": StageSpec("split", 1, "nowhere:run", ("matching.window",), reads_video=True),
-        "part": StageSpec("part", 1, "nowhere:run", ("mapper.min_model_size",), fan_out=True),
-        "join": StageSpec("join", 1, "nowhere:run", ("mesh.poisson_trim",)),
-        "last": StageSpec("last", 1, "nowhere:run", ("timeline.radius_fraction",), reads_annotations=True),
+        "split": StageSpec("split", 1, "nowhere:run", Product, ("matching.window",), reads_video=True),
+        "part": StageSpec("part", 1, "nowhere:run", Product, ("mapper.min_model_size",), fan_out=True),
+        "join": StageSpec("join", 1, "nowhere:run", Product, ("mesh.poisson_trim",)),
+        "last": StageSpec("last", 1, "nowhere:run", Product, ("timeline.radius_fraction",), reads_annotations=True),
     },
     _expand,
     serves_from=("join",),

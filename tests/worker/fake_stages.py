@@ -17,36 +17,61 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from core.errors import NoReconstruction, StageFailed
 from core.graph import TaskSpec
+from core.products.contract import Facts, Product, Products
 from core.settings import Settings
-from core.stage import Facts, StageResult, StageTask
+from core.stage import StageTask
 from core.stage_specs import StageSpec
 from store.graph import Graph
+
+
+@dataclass(frozen=True, kw_only=True)
+class SplitProduct(Product):
+    n: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartProduct(Product):
+    i: int
+    size: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class JoinProduct(Product):
+    parts: int
+    trim: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class LastProduct(Product):
+    said: str
 
 
 def _expand(settings: Settings, facts: Mapping[str, Facts]) -> list[TaskSpec]:
     tasks = [TaskSpec("split")]
     if "split" not in facts:
         return tasks
-    parts = [TaskSpec(f"part/{i:03d}", ("split",), {"i": i}, optional=True) for i in range(facts["split"]["n"])]
+    n = Products(facts).of(SplitProduct, "split").n
+    parts = [TaskSpec(f"part/{i:03d}", ("split",), {"i": i}, optional=True) for i in range(n)]
     keys = tuple(part.key for part in parts)
     return [*tasks, *parts, TaskSpec("join", ("split", *keys)), TaskSpec("last", ("join",))]
 
 
-def _spec(name: str, setting: str, **more: Any) -> StageSpec:
-    return StageSpec(name, 1, f"tests.worker.fake_stages:{name}", (setting,), **more)
+def _spec(name: str, product: type[Product], setting: str, **more: Any) -> StageSpec:
+    return StageSpec(name, 1, f"tests.worker.fake_stages:{name}", product, (setting,), **more)
 
 
 GRAPH = Graph(
     {
-        "split": _spec("split", "matching.window", reads_video=True),
-        "part": _spec("part", "mapper.min_model_size", fan_out=True, weight=10),
-        "join": _spec("join", "mesh.poisson_trim"),
-        "last": _spec("last", "timeline.radius_fraction", reads_annotations=True),
+        "split": _spec("split", SplitProduct, "matching.window", reads_video=True),
+        "part": _spec("part", PartProduct, "mapper.min_model_size", fan_out=True, weight=10),
+        "join": _spec("join", JoinProduct, "mesh.poisson_trim"),
+        "last": _spec("last", LastProduct, "timeline.radius_fraction", reads_annotations=True),
     },
     _expand,
     serves_from=("join",),
@@ -57,24 +82,26 @@ SMALL = {"matching.window": 2}
 """Options of the tests' runs: two parts, because every task is a process and tests should be quick."""
 
 
-def split(task: StageTask) -> StageResult:
+def split(task: StageTask) -> SplitProduct:
     """How many parts: the setting says."""
     _behave(task)
     (task.out / "video.txt").write_text(hashlib.sha256(task.recordings[0].video.read_bytes()).hexdigest())
-    return _done(task, {"n": task.settings.matching.window})
+    _note(task, "end")
+    return SplitProduct(n=task.settings.matching.window)
 
 
-def part(task: StageTask) -> StageResult:
+def part(task: StageTask) -> PartProduct:
     """A folder with some bytes that follow from the input."""
     _behave(task)
     seed = (task.input("split") / "video.txt").read_text() + str(task.args["i"])
     folder = task.out / "model"
     folder.mkdir()
     (folder / "points.bin").write_bytes(hashlib.sha256(seed.encode()).digest() * 4000)
-    return _done(task, {"i": task.args["i"], "size": task.settings.mapper.min_model_size})
+    _note(task, "end")
+    return PartProduct(i=task.args["i"], size=task.settings.mapper.min_model_size)
 
 
-def join(task: StageTask) -> StageResult:
+def join(task: StageTask) -> JoinProduct:
     """Hash of all parts that there are."""
     _behave(task)
     digest = hashlib.sha256()
@@ -82,21 +109,18 @@ def join(task: StageTask) -> StageResult:
     for _, folder in found:
         digest.update((folder / "model" / "points.bin").read_bytes())
     (task.out / "joined.txt").write_text(digest.hexdigest())
-    return _done(task, {"parts": len(found), "trim": task.settings.mesh.poisson_trim})
+    _note(task, "end")
+    return JoinProduct(parts=len(found), trim=task.settings.mesh.poisson_trim)
 
 
-def last(task: StageTask) -> StageResult:
+def last(task: StageTask) -> LastProduct:
     """What the annotations said, beside the joined hash."""
     _behave(task)
     notes = task.recordings[0].annotations
     said = notes.read_text() if notes else ""
     (task.out / "last.txt").write_text((task.input("join") / "joined.txt").read_text() + said)
-    return _done(task, {"said": said})
-
-
-def _done(task: StageTask, facts: Facts) -> StageResult:
     _note(task, "end")
-    return StageResult(facts)
+    return LastProduct(said=said)
 
 
 def _note(task: StageTask, what: str) -> None:

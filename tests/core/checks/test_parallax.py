@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from core.checks.parallax import cases_parallax, largest_angle_deg, model_parallax
+from core.products.contract import read_product
+from core.products.search import CaseProduct
+from tests.core.making_products import facts_of
 
 
-def case(reason: str = "", status: str = "no_model") -> dict[str, str]:
-    return {"status": "succeeded" if not reason else status, "reason": reason}
+def case(reason: str = "") -> CaseProduct:
+    facts = facts_of(CaseProduct, status="no_model" if reason else "succeeded", reason=reason)
+    return read_product(CaseProduct, facts, "coarse/x")
 
 
 def test_a_clip_whose_cases_all_stand_still_has_no_parallax() -> None:
@@ -17,7 +21,7 @@ def test_a_clip_whose_cases_all_stand_still_has_no_parallax() -> None:
 
 
 @pytest.mark.parametrize(
-    "rows",
+    "cases",
     [
         [case("no_parallax"), case("no_parallax"), case()],
         [case("no_parallax"), case("no_initial_pair")],
@@ -25,8 +29,8 @@ def test_a_clip_whose_cases_all_stand_still_has_no_parallax() -> None:
         [],
     ],
 )
-def test_a_model_or_other_reasons_speak_against_it(rows: list[dict[str, str]]) -> None:
-    assert cases_parallax(rows) is None
+def test_a_model_or_other_reasons_speak_against_it(cases: list[CaseProduct]) -> None:
+    assert cases_parallax(cases) is None
 
 
 def test_a_model_of_tiny_angles_has_no_parallax() -> None:

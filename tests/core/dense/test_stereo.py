@@ -19,8 +19,9 @@ from core.dense.maps import DepthMap, open_scene, read_map, write_map
 from core.dense.stereo import PhotometricStereo
 from core.dense.workspace import read_maps, write_maps, write_patch_match_config, write_workspace
 from core.errors import BadInput, StageFailed
+from core.products.contract import Facts
 from core.settings import make_settings
-from core.stage import Facts, StageTask
+from core.stage import StageTask
 from core.stages import depth as depth_stage
 from core.stages import fuse as fuse_stage
 from core.stages import geometric as geometric_stage
@@ -48,16 +49,16 @@ def _truth(undistorted: Undistorted, name: str) -> tuple[np.ndarray, np.ndarray]
 def chain(undistorted: Undistorted) -> Chain:
     """Stages depth and geometric over all views, in two chunks."""
     settings, root = make_settings("default", OPTIONS), undistorted.root
+    facts: dict[str, Facts] = {}
 
     def run(stage: ModuleType, key: str, args: Mapping[str, int], inputs: Mapping[str, Path]) -> tuple[Path, Facts]:
         out = root / key
         out.mkdir(parents=True)
-        task = StageTask(key, args, settings, inputs, {}, (), out)
+        task = StageTask(key, args, settings, inputs, facts, (), out)
         return out, stage.run(task).facts
 
     inputs = {"undistort": undistorted.folder}
     chunks = [("000", {"start": 0, "end": 3}), ("001", {"start": 3, "end": 6})]
-    facts = {}
     for number, args in chunks:
         inputs[f"depth/{number}"], facts[f"depth/{number}"] = run(
             depth_stage, f"depth/{number}", args, {"undistort": undistorted.folder}

@@ -7,11 +7,14 @@ from typing import Any
 
 import pytest
 
+from core.products.search import ExtendProduct
+from core.products.surface import MeshProduct
 from core.report.build import build_report
 from core.report.losses import AFTER_MODEL
 from core.report.record import RunRecord, TaskRecord
 from core.scene.detection import Outcome, Reason
 from core.states import RunState, TaskState
+from tests.core.making_products import facts_of
 from tests.core.making_record import failed_record, full_record
 
 ORDER = ("undistort", "fuse", "mesh", "map_defects", "timeline", "gallery")
@@ -65,7 +68,7 @@ def test_a_run_that_was_cancelled_after_its_model_is_suspect() -> None:
     assert flags_of(record) == {"incomplete": "cancelled"}
 
 
-@pytest.mark.parametrize("facts", [{}, {"n_faces": 0, "n_vertices": 3}])
+@pytest.mark.parametrize("facts", [{}, facts_of(MeshProduct, n_faces=0, n_vertices=3)])
 def test_an_empty_surface_is_told_whatever_the_state(facts: dict[str, Any]) -> None:
     full = full_record()
     tasks = [replace(task, facts=facts) if task.key == "mesh" else task for task in full.tasks]
@@ -87,7 +90,7 @@ def test_a_run_that_placed_nothing_is_told_unless_there_was_nothing_to_place() -
 
 def test_a_further_model_that_lost_its_surface_is_told_and_one_that_never_was_is_not() -> None:
     full = full_record()
-    model = TaskRecord("extend@1", TaskState.SUCCEEDED, facts={"registered_images": 9})
+    model = TaskRecord("extend@1", TaskState.SUCCEEDED, facts=facts_of(ExtendProduct, registered_images=9))
     lost = [TaskRecord("fuse@1", TaskState.FAILED, reason="empty_cloud"), TaskRecord("mesh@1", TaskState.SKIPPED)]
     record = replace(full, tasks=[*full.tasks, model, *lost])
     assert flags_of(record) == {"incomplete": "model 1, fuse: empty_cloud"}

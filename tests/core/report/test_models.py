@@ -12,6 +12,9 @@ from core.flags import Verdict
 from core.io.annotations import write_rows
 from core.io.frames import write_registered
 from core.io.timeline import write_timeline
+from core.products.contract import Products
+from core.products.front import CameraProduct
+from core.products.search import ExtendProduct, PassedProduct, ReverifyProduct
 from core.report.build import build_report
 from core.report.load import join_detections, load_tables, served_submodels
 from core.report.quality import build_quality, collect_flags
@@ -21,6 +24,7 @@ from core.scene.defect import EventRow
 from core.scene.detection import DetectionRow, Outcome
 from core.states import TaskState
 from core.timeline.grouping import Start
+from tests.core.making_products import facts_of
 from tests.core.making_record import case, full_record
 from tests.core.making_rows import defect, mapped, unplaced
 
@@ -44,8 +48,8 @@ def test_ids_go_on_over_the_models() -> None:
         "timeline@2": {"n_defects": 9, "n_events": 9},
         "mesh": {"n_faces": 4},
     }
-    assert Start.after(facts, 0) == Start(0, 0)
-    start = Start.after(facts, 2)
+    assert Start.after(Products(facts), 0) == Start(0, 0)
+    start = Start.after(Products(facts), 2)
     assert start == Start(5, 7)
     placed = replace(mapped(0, (0.0, 0.0, 0.0), 1.0, frame=1), defect_id=1)
     assert [one.defect_id for one in start.rows([placed, unplaced(1, "no_frame", time_s=2.0, source_index=None)])] == [
@@ -90,7 +94,7 @@ def test_the_report_says_which_model_a_frame_and_a_warning_belong_to() -> None:
     free = [f.index for f in record.tables.frames if f.index not in record.tables.registered][:1]
     taken = record.tables.registered[0]
     check = {"code": "weak_join", "severity": "warning", "value": 20.0, "threshold": 30.0, "where": "frame 4"}
-    facts = {"registered_images": 12, "points3D": 900, "mean_reprojection_error_px": 0.5, "checks": [check]}
+    facts = facts_of(ExtendProduct, registered_images=12, points3D=900, checks=[check])
     record = replace(
         record,
         tasks=[*record.tasks, TaskRecord("extend@1", TaskState.SUCCEEDED, facts=facts)],
@@ -134,7 +138,9 @@ def test_the_part_of_a_rejected_model_is_the_selected_case() -> None:
     flag = {"code": "parts_after_veto", "severity": "warning", "where": "frames 0-29 of seg_006_0120_0300"}
     part = case("section_000_0000_0030", 30, 900)
     reducer = TaskRecord(
-        "reduce_parts", TaskState.SUCCEEDED, facts={"best": "section_000_0000_0030", "kind": "section", "flags": [flag]}
+        "reduce_parts",
+        TaskState.SUCCEEDED,
+        facts=facts_of(PassedProduct, best="section_000_0000_0030", kind="section", flags=[flag]),
     )
     report = build_report(replace(record, tasks=[*record.tasks, part, reducer]))
     assert report.verdict == Verdict.SUSPECT
@@ -149,10 +155,10 @@ def test_the_part_of_a_rejected_model_is_the_selected_case() -> None:
 def test_of_two_lenses_the_one_that_the_model_started_from_speaks(passed: bool) -> None:
     record = full_record()
     doubt = {"severity": "warning", "where": "camera"}
-    fisheye = {"model": "OPENCV_FISHEYE", "focal_from": "colmap", "flags": [{"code": "lens_unknown", **doubt}]}
-    other = {"model": "SIMPLE_RADIAL", "focal_from": "estimated", "flags": [{"code": "focal_uncertain", **doubt}]}
+    fisheye = facts_of(CameraProduct, focal_from="colmap", flags=[{"code": "lens_unknown", **doubt}])
+    other = facts_of(ReverifyProduct, focal_from="estimated", flags=[{"code": "focal_uncertain", **doubt}])
     name = "perspective_000_0000_0030"
-    choice = {"best": name, "kind": "perspective", "flags": [{"code": "perspective_after_veto", **doubt}]}
+    choice = facts_of(PassedProduct, best=name, flags=[{"code": "perspective_after_veto", **doubt}])
     tasks = [
         *(task for task in record.tasks if task.key != "camera"),
         TaskRecord("camera", TaskState.SUCCEEDED, facts=fisheye),

@@ -93,7 +93,10 @@ def test_weak_and_losing_cases() -> None:
 def test_a_case_that_verified_less_is_told_so() -> None:
     record = full_record()
     counts = {"refine_005_0090_0310": 6, "seg_006_0120_0300": 4, "seg_014_0280_0450": 6}
-    ranking = [{"name": name, "verified_detections": count} for name, count in counts.items()]
+    ranking = [
+        {"name": name, "verified_detections": count, "registered_images": 0, "points3D": 0}
+        for name, count in counts.items()
+    ]
     tasks = [
         replace(task, facts={**task.facts, "ranking": ranking}) if task.key == "reduce_refine" else task
         for task in record.tasks

@@ -11,6 +11,9 @@ from typing import Any
 
 import pytest
 
+from core.errors import StageFailed
+from core.products.contract import read_product
+from core.products.search import CaseProduct
 from core.scene.case import CASE_COLUMNS, CaseRow, CaseStatus, StartMode
 from core.scene.defect import Confidence, DefectRecord, EventRow, Sighting
 from core.scene.detection import Detection, DetectionRow
@@ -26,6 +29,7 @@ from core.scene.frame import (
     index_of_image,
 )
 from core.scene.on_row import ROW_COLUMNS
+from tests.core.making_products import facts_of
 from tests.core.making_rows import defect, detection, mapped, run_frames, unplaced
 
 FRAME = Frame(3, 30, 3000, 1.5, "ab" * 32, Role.NEIGHBOUR)
@@ -96,14 +100,13 @@ def test_the_frame_table_is_by_index_and_knows_its_search() -> None:
 
 
 def test_a_case_out_of_its_facts() -> None:
-    facts: dict[str, Any] = dict.fromkeys(CASE_COLUMNS[:-4], 0)
-    facts |= {"name": "seg_000_0000_0180", "kind": "coarse", "status": "succeeded", "reason": "", "start_mode": "warm"}
-    row = CaseRow.from_facts({**facts, "vetoed": 1, "checks": []}, seconds=2.5, selected=True)
+    facts = facts_of(CaseProduct, name="seg_000_0000_0180", status="succeeded", start_mode="warm", vetoed=1)
+    row = read_product(CaseProduct, facts, "coarse/x").row(seconds=2.5, selected=True)
     assert (row.status, row.start_mode, row.reason) == (CaseStatus.SUCCEEDED, StartMode.WARM, None)
     assert (row.succeeded, row.vetoed, row.selected, row.seconds) == (True, 1, 1, 2.5)
     assert tuple(row.to_dict()) == CASE_COLUMNS
-    with pytest.raises(ValueError, match="lukewarm"):
-        CaseRow.from_facts({**facts, "start_mode": "lukewarm"}, seconds=None, selected=False)
+    with pytest.raises(StageFailed, match="start_mode"):
+        read_product(CaseProduct, {**facts, "start_mode": "lukewarm"}, "coarse/x")
 
 
 @pytest.mark.parametrize("kind", [Frame, FrameRow, CaseRow, DetectionRow, EventRow])

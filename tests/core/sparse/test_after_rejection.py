@@ -14,15 +14,19 @@ from core.errors import NoReconstruction
 from core.features.io import write_features
 from core.geometry.lens import PERSPECTIVE
 from core.io.frames import write_frames
+from core.products.contract import Facts, Product
+from core.products.front import FocalProduct, FramesProduct
+from core.products.search import NoPartProduct, RefinedProduct
 from core.scene.case import GRAPHS
 from core.scene.frame import Crop
 from core.settings import make_settings, only_declared
-from core.stage import Facts, StageResult, StageTask
+from core.stage import StageTask
 from core.stage_specs import STAGES
 from core.stages import focal, perspective, prune, reduce_parts, reduce_perspective, reverify, section
 from core.task_key import stage_of
 from core.verification import CameraFields, read_camera
 from core.viewgraph import read_graph
+from tests.core.making_products import facts_of
 from tests.core.making_rows import run_frames
 from tests.core.sparse.scene import HEIGHT, LENS, WIDTH, center_errors, make_scene, view_graph, write_graph
 
@@ -34,14 +38,15 @@ TRUE: CameraFields = {
     "height": HEIGHT,
     "params": [FOCAL, WIDTH / 2, HEIGHT / 2, -0.03],
 }
-SIZES: Facts = {
-    "crop": [0, 0, WIDTH, HEIGHT],
-    "source_width": WIDTH,
-    "source_height": HEIGHT,
-    "n_frames": FEW,
-    "n_search": FEW,
-}
-REJECTED: Facts = {"best": "seg_000_0000_0016", "start": 0, "end": FEW, "vetoed": True, "codes": "bent_model"}
+SIZES = facts_of(
+    FramesProduct,
+    crop=(0, 0, WIDTH, HEIGHT),
+    source_width=WIDTH,
+    source_height=HEIGHT,
+    n_frames=FEW,
+    n_search=FEW,
+)
+REJECTED = facts_of(RefinedProduct, best="seg_000_0000_0016", end=FEW, vetoed=True, codes="bent_model")
 WHY = "every model was vetoed by the checks"
 
 
@@ -65,9 +70,9 @@ class Run:
         settings = only_declared(make_settings("default", options), STAGES[stage_of(key)].settings)
         inputs, facts = dict(self.inputs), dict(self.facts)
         task = StageTask(key, args or {}, settings, inputs, facts, (), self.add(key))
-        result: StageResult = stage.run(task)
-        self.facts[key] = result.facts
-        return result.facts
+        product: Product = stage.run(task)
+        self.facts[key] = product.facts
+        return self.facts[key]
 
 
 def test_the_sides_of_a_weld_are_mapped_alone_and_the_larger_one_wins(tmp_path: Path) -> None:
@@ -84,7 +89,7 @@ def test_the_sides_of_a_weld_are_mapped_alone_and_the_larger_one_wins(tmp_path: 
     for image_id in range(WELD + 2, N + 1):
         image = model.image(image_id)
         model.frame(image.frame_id).set_cam_from_world(image.camera_id, image.cam_from_world() * turn)
-    facts = {"best": "seg_000_0000_0028", "vetoed": True, "codes": "bent_model"}
+    facts = {**REJECTED, "best": "seg_000_0000_0028"}
     folder = run.add("reduce_refine", facts) / "model"
     folder.mkdir()
     model.write_binary(folder)
@@ -121,7 +126,7 @@ def test_the_perspective_lens_is_found_and_the_cameras_with_it(tmp_path: Path) -
     for frame, found in enumerate(scene.features):
         write_features(features / f"{frame:04d}.npz", found)
     run.add("reduce_refine", REJECTED)
-    run.add("reduce_parts", {"best": "", "why": WHY})
+    run.add("reduce_parts", facts_of(NoPartProduct, why=WHY))
     taken_for_fisheye = replace(scene, lens=LENS)
     table = view_graph(taken_for_fisheye)
     write_graph(tmp_path / "graph", taken_for_fisheye, table)
@@ -145,15 +150,12 @@ def test_the_perspective_lens_is_found_and_the_cameras_with_it(tmp_path: Path) -
     assert np.median(center_errors(model, scene)) < 0.01
 
 
-@pytest.mark.parametrize(
-    "starts",
-    [[], [{"fov_deg": 70.0, "model": "SIMPLE_RADIAL", "focal_px": 400.0, "k1": 0.0, "registered": 0, "points3D": 0}]],
-)
+@pytest.mark.parametrize("starts", [[], [facts_of(FocalProduct, fov_deg=70.0, model="SIMPLE_RADIAL", focal_px=400.0)]])
 def test_without_a_perspective_lens_the_run_stays_refused_for_what_it_was(starts: list[Facts], tmp_path: Path) -> None:
     run = Run(tmp_path)
     run.add("frames", SIZES)
-    run.add("reduce_parts", {"best": "", "why": WHY})
+    run.add("reduce_parts", facts_of(NoPartProduct, why=WHY))
     for start in starts:
-        run.add(f"focal/{PERSPECTIVE}-070.0", {**start, "mean_reprojection_error_px": 0.0})
+        run.add(f"focal/{PERSPECTIVE}-070.0", start)
     with pytest.raises(NoReconstruction, match=f"{WHY}; no perspective lens was found either"):
         run.go(reverify, "reverify", {"model": str(PERSPECTIVE)})

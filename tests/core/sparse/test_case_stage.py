@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from core.scene.case import CASE_COLUMNS, CaseRow
+from core.scene.case import CASE_COLUMNS
 from core.settings import make_settings
-from core.sparse.case_stage import case_checks, trust_facts
+from core.sparse.case_stage import case_checks, is_rejected
 from core.sparse.cases import Case, run_case
 from core.stage import StageTask
 from core.stages import coarse
@@ -22,7 +22,7 @@ def test_a_bent_model_is_rejected_and_a_straight_one_is_not(tmp_path: Path) -> N
     scene = make_scene(16, 600)
     case = Case(write_graph(tmp_path / "graph", scene, view_graph(scene)), 0, 16, make_settings().mapper, 0)
     result = run_case(case)
-    assert not trust_facts(case_checks(result, case))["vetoed"]
+    assert not is_rejected(case_checks(result, case))
 
     # Turning the second half of the model by 7 degrees is the same as turning what was measured across the cut.
     table = read_table(case.graph / "graph.npz")
@@ -31,11 +31,11 @@ def test_a_bent_model_is_rejected_and_a_straight_one_is_not(tmp_path: Path) -> N
     seam = Rotation.from_euler("z", 7, degrees=True)
     turned[across] = (Rotation.from_quat(turned[across]) * seam).as_quat()
     write_table(case.graph / "graph.npz", replace(table, rotation_xyzw=turned))
-    facts = trust_facts(case_checks(result, case))
-    assert facts["vetoed"]
-    bent = next(check for check in facts["checks"] if check["code"] == "bent_model")
-    np.testing.assert_allclose(bent["value"], 7, atol=1)
-    assert bent["where"] == "between frames 7 and 8"
+    checks = case_checks(result, case)
+    assert is_rejected(checks)
+    bent = next(check for check in checks if check.code == "bent_model")
+    np.testing.assert_allclose(bent.value or 0.0, 7, atol=1)
+    assert bent.where == "between frames 7 and 8"
 
 
 def test_a_case_says_every_column_that_it_can_know_in_their_order(tmp_path: Path) -> None:
@@ -43,17 +43,19 @@ def test_a_case_says_every_column_that_it_can_know_in_their_order(tmp_path: Path
     graph = write_graph(tmp_path / "graph", scene, view_graph(scene))
     args = {"name": "seg_000_0000_0002", "start": 0, "end": 2, "warm_from": ""}
     task = StageTask("coarse/x", args, make_settings(), {"graph": graph}, {}, (), tmp_path)
-    facts = coarse.run(task).facts
+    product = coarse.run(task)
+    facts = product.facts
     known = [name for name in CASE_COLUMNS if name not in ("seconds", "selected", "vetoed")]
     assert list(facts) == [*known, "checks", "vetoed"]
     assert (facts["kind"], facts["status"], facts["reason"]) == ("coarse", "no_model", "too_few_frames")
-    row = CaseRow.from_facts(facts, seconds=1.0, selected=False)
+    row = product.row(seconds=1.0, selected=False)
     assert {name: getattr(row, name) for name in known} == {name: facts[name] for name in known}
-    bad = CaseRow.from_facts({**facts, "reason": ""}, seconds=None, selected=False)
+    bad = replace(product, reason="").row(seconds=None, selected=False)
     assert bad.reason is None
 
 
 def test_without_a_model_nothing_is_rejected(tmp_path: Path) -> None:
     scene = make_scene(16, 600)
     case = Case(write_graph(tmp_path / "graph", scene, view_graph(scene)), 0, 2, make_settings().mapper, 0)
-    assert trust_facts(case_checks(run_case(case), case)) == {"checks": [], "vetoed": False}
+    checks = case_checks(run_case(case), case)
+    assert (checks, is_rejected(checks)) == ([], False)

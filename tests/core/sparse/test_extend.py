@@ -8,13 +8,18 @@ import pycolmap
 import pytest
 
 from core.checks.stats import ModelStats, model_stats
+from core.products.contract import Facts
+from core.products.front import CameraProduct, FramesProduct
+from core.products.search import RefinedProduct
 from core.settings import make_settings
 from core.settings.groups import MapperSettings
 from core.sparse.cases import Case, choose, confirmed_or_searched
 from core.sparse.extend import register_rest
-from core.stage import Facts, StageTask
+from core.sparse.focal import SpanFocal, joined
+from core.stage import StageTask
 from core.stages import confirm as confirm_stage
 from core.stages import extend as extend_stage
+from tests.core.making_products import facts_of
 from tests.core.sparse.scene import FOCAL, Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 SETTINGS = MapperSettings(search_tracks=150)
@@ -95,7 +100,7 @@ def run_stages(
     for name in ("reduce_refine/model", "confirm", "extend"):
         (out / name).mkdir(parents=True)
     winner.write_binary(out / "reduce_refine/model")
-    reduced = {"best": "seg_000_0004_0014", "start": 4, "end": 14, "kind": "coarse", "start_mode": start_mode}
+    reduced = facts_of(RefinedProduct, best="seg_000_0004_0014", start=4, end=14, start_mode=start_mode)
 
     def task(key: str, inputs: Mapping[str, Path], facts: Mapping[str, Facts]) -> StageTask:
         return StageTask(key, {}, settings, inputs, facts, (), out / key)
@@ -103,10 +108,10 @@ def run_stages(
     confirmed = confirm_stage.run(
         task("confirm", {"graph": graph, "reduce_refine": out / "reduce_refine"}, {"reduce_refine": reduced})
     ).facts
-    spans = [{"focal_px": said_px, "registered_images": 14, "points3D": 900}]
-    camera = {"chosen_start_deg": 85.0, "starts": [{"fov_deg": 85.0, "spans": spans}]}
+    span = SpanFocal(0, 14, 14, said_px, 0.0, 14, 900, 0.5)
+    camera = facts_of(CameraProduct, chosen_start_deg=85.0, starts=[joined(85.0, "OPENCV_FISHEYE", [span])])
     facts: dict[str, Facts] = {
-        "frames": {"n_frames": N_FRAMES, "n_search": N_FRAMES},
+        "frames": facts_of(FramesProduct, n_frames=N_FRAMES, n_search=N_FRAMES),
         "camera": camera,
         "confirm": confirmed,
     }

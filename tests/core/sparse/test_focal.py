@@ -4,13 +4,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from core.features.io import FrameFeatures, write_features
 from core.io.frames import write_frames
 from core.matching.keyframes import Keyframes, write_keyframes
+from core.products.contract import read_product
+from core.products.front import FramesProduct
 from core.scene.frame import Crop, Frame, Role, RunFrames
 from core.settings import make_settings, only_declared
 from core.sparse import focal as search
@@ -19,12 +20,14 @@ from core.sparse.lens import fov_from_focal, start_lens
 from core.stage import StageTask
 from core.stage_specs import STAGES
 from core.stages import focal
+from tests.core.making_products import facts_of
 from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, Scene, make_scene
 
 TRUE_FOV = fov_from_focal(FOCAL, WIDTH)
 
 
 CAMERA = make_settings().camera
+SIZES = facts_of(FramesProduct, crop=(0, 0, WIDTH, HEIGHT), source_width=WIDTH, source_height=HEIGHT)
 
 
 def found(registered: int, k1: float = 0.0) -> SpanFocal:
@@ -38,12 +41,7 @@ def task(scene: Scene, folder: Path, fov_deg: float) -> StageTask:
         features.mkdir()
         for index, found in enumerate(scene.features):
             write_features(features / f"{index:04d}.npz", found)
-    frames: dict[str, Any] = {
-        "crop": [0, 0, WIDTH, HEIGHT],
-        "source_width": WIDTH,
-        "source_height": HEIGHT,
-        "n_search": len(scene.features),
-    }
+    frames = {**SIZES, "n_search": len(scene.features)}
     table = folder / "frames"
     if not table.exists():
         table.mkdir()
@@ -122,13 +120,17 @@ def test_a_slow_clip_is_mapped_on_its_keyframes(tmp_path: Path) -> None:
 
 
 def test_spans_are_joined_by_their_points() -> None:
-    facts = joined([SpanFocal(0, 30, 30, 500.0, 0.1, 30, 3000, 0.5), SpanFocal(40, 90, 30, 520.0, 0.2, 20, 1000, 0.9)])
-    assert facts["focal_px"] == pytest.approx(math.exp(0.75 * math.log(500) + 0.25 * math.log(520)))
-    assert facts["k1"] == pytest.approx(0.125)
-    assert (facts["registered"], facts["points3D"], facts["frames"]) == (50, 4000, 60)
-    assert facts["mean_reprojection_error_px"] == pytest.approx(0.6)
-    nothing = joined([SpanFocal(0, 30, 30, 700.0, 0.0, 0, 0, 0.0)])
-    assert (nothing["focal_px"], nothing["registered"]) == (700.0, 0)
+    found = joined(
+        85.0,
+        "OPENCV_FISHEYE",
+        [SpanFocal(0, 30, 30, 500.0, 0.1, 30, 3000, 0.5), SpanFocal(40, 90, 30, 520.0, 0.2, 20, 1000, 0.9)],
+    )
+    assert found.focal_px == pytest.approx(math.exp(0.75 * math.log(500) + 0.25 * math.log(520)))
+    assert found.k1 == pytest.approx(0.125)
+    assert (found.registered, found.points3D, found.frames) == (50, 4000, 60)
+    assert found.mean_reprojection_error_px == pytest.approx(0.6)
+    nothing = joined(85.0, "OPENCV_FISHEYE", [SpanFocal(0, 30, 30, 700.0, 0.0, 0, 0, 0.0)])
+    assert (nothing.focal_px, nothing.registered) == (700.0, 0)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +158,7 @@ def test_a_span_that_comes_apart_is_tried_with_wider_pairs(
             return near if len(asked) == 1 else wide
 
     monkeypatch.setattr(search, "_Span", Span)
-    lens = start_lens({"crop": [0, 0, WIDTH, HEIGHT], "source_width": WIDTH, "source_height": HEIGHT}, CAMERA, TRUE_FOV)
+    lens = start_lens(read_product(FramesProduct, SIZES, "frames"), CAMERA, TRUE_FOV)
     result = find_focal(range(24), lens, make_settings(), lambda _: make_scene(1, 9).features[0], lambda *_: None)
     assert result == {"near": near, "wide": wide}[kept]
     assert asked[0] == GAPS

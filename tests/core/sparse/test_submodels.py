@@ -9,12 +9,14 @@ import numpy as np
 import pycolmap
 import pytest
 
+from core.products.front import FramesProduct
 from core.settings import make_settings
 from core.sparse.cases import Case
 from core.sparse.submodels import MIN_FRAMES, find_submodels, groups_of
 from core.stage import StageTask
 from core.stages import pieces as stage
 from core.viewgraph import PairTable
+from tests.core.making_products import facts_of
 from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
 N, CUT = 36, 20
@@ -98,7 +100,7 @@ def test_the_stage_writes_what_the_final_model_lacks(broken: tuple[Scene, PairTa
     out = tmp_path / "out"
     out.mkdir()
     inputs = {"graph": graph, "extend": tmp_path / "extend"}
-    facts = {"frames": {"n_frames": N, "n_search": N}}
+    facts = {"frames": facts_of(FramesProduct, n_frames=N, n_search=N)}
     result = stage.run(StageTask("pieces", {}, make_settings(), inputs, facts, (), out))
     assert result.facts == {"n_pieces": 1, "registered_images": [N - CUT], "registered_first": CUT}
     assert pycolmap.Reconstruction(out / "1/model").num_reg_images() == N - CUT

@@ -18,6 +18,7 @@ from core.io.frames import read_crop, read_frames, write_frames
 from core.matching.auto import GIVE_UP_AFTER
 from core.matching.keyframes import Keyframes, read_keyframes, write_keyframes
 from core.matching.lightglue import LightGlueMatcher
+from core.products.front import FramesProduct
 from core.scene.frame import RunFrames
 from core.settings import make_settings
 from core.stage import StageTask
@@ -26,6 +27,7 @@ from core.verification import STRONG_INLIERS
 from core.videos import Recording
 from core.viewgraph import read_pairs, read_table
 from tests.core.making_frames import SIZE, frames_folder
+from tests.core.making_products import facts_of
 
 OPTIONS = {"features.max_keypoints": 400, "matching.method": "mutual_nearest", "matching.window": 2}
 
@@ -140,7 +142,7 @@ def test_a_missing_chunk_is_named(run: Path, tmp_path: Path) -> None:
 
 def test_motion_chooses_among_the_search_frames(run: Path, tmp_path: Path) -> None:
     task = _task("motion", tmp_path, _inputs(run))
-    facts = motion.run(replace(task, facts={"frames": {"n_search": 5, "crop": [0, 0, *SIZE]}})).facts
+    facts = motion.run(replace(task, facts={"frames": facts_of(FramesProduct, n_search=5, crop=(0, 0, *SIZE))})).facts
     assert read_keyframes(tmp_path).frames == (0, 1, 2, 3, 4)
     assert facts == {"n_keyframes": 5, "median_step": 1.0, "motion_per_frame": pytest.approx(6 / SIZE[0], rel=0.05)}
 
@@ -152,7 +154,7 @@ def test_nothing_moves_over_a_cut_between_two_videos(run: Path, tmp_path: Path) 
     frames = read_frames(cut)
     write_frames(cut, RunFrames(tuple(replace(one, video=int(one.index >= 3)) for one in frames)), read_crop(cut))
     task = _task("motion", tmp_path / "out", {**inputs, "frames": cut})
-    motion.run(replace(task, facts={"frames": {"n_search": 5, "crop": [0, 0, *SIZE]}}))
+    motion.run(replace(task, facts={"frames": facts_of(FramesProduct, n_search=5, crop=(0, 0, *SIZE))}))
     moved = read_keyframes(tmp_path / "out").moved
     assert [one is None for one in moved] == [False, False, True, False]
 

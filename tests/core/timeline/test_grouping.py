@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.mapping.observations import Observation
+from core.products.contract import Products
 from core.scene.defect import EventRow
 from core.settings import make_settings
 from core.surface.ply import Mesh
@@ -14,18 +15,20 @@ from core.timeline.defects import Defect, Found
 from core.timeline.grouping import Start, paint_defects
 from tests.core.making_rows import defect, mapped, unplaced
 
-FACTS = {
-    "timeline": {"n_defects": 3, "n_events": 5},
-    "timeline@1": {"n_defects": 2, "n_events": 7},
-    "timeline@2": {"n_defects": 11, "n_events": 13},
-    "map_defects": {"n_defects": 100, "n_events": 100},
-}
+DONE = Products(
+    {
+        "timeline": {"n_defects": 3, "n_events": 5},
+        "timeline@1": {"n_defects": 2, "n_events": 7},
+        "timeline@2": {"n_defects": 11, "n_events": 13},
+        "map_defects": {"n_defects": 100, "n_events": 100},
+    }
+)
 
 
 def test_ids_start_behind_those_of_all_models_before() -> None:
-    assert Start.after(FACTS, 0) == Start(0, 0)
-    assert Start.after(FACTS, 1) == Start(3, 5)
-    assert Start.after(FACTS, 2) == Start(5, 12)
+    assert Start.after(DONE, 0) == Start(0, 0)
+    assert Start.after(DONE, 1) == Start(3, 5)
+    assert Start.after(DONE, 2) == Start(5, 12)
 
 
 def test_every_file_counts_on_from_there() -> None:

@@ -1,0 +1,1 @@
+"""What stages hand on beside their files: one frozen type for each kind of task, written and read in `contract`."""

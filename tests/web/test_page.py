@@ -203,8 +203,8 @@ def test_axe_finds_nothing(view: Open, scheme: str) -> None:
         assert faults(opened.page) == [], (state, scheme)
 
 
-DIALOGS = "rslntgyw"
-"""Keys of the actions that ask for a word, or for a place on the frame."""
+DIALOGS = "slyw"
+"""Keys of actions, one for each form in which they ask: a choice, a word, several choices, a place on the frame."""
 
 
 def test_axe_finds_nothing_in_what_asks_for_a_word(view: Open) -> None:

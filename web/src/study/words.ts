@@ -11,7 +11,7 @@ export const INTRODUCTIONS: Readonly<Record<Condition, string>> = {
 
 export const CONSENT: readonly string[] = [
   "This study compares two ways to show the result of a borescope inspection. You answer eight questions with each and say what you think of it. It takes about 40 minutes.",
-  "Recorded are your answers, how long each took, what you mark in the questionnaires, the size of the window, and the number that you were given. No name, no voice and no picture of you is recorded.",
+  "Recorded are your answers, how long each took and how sure you were, what you mark in the questionnaires, three answers about your experience, when you began and ended, whether the window was hidden, its size, and the number that you were given. No name, no voice and no picture of you is recorded.",
   "Everything stays in this browser until it is saved as two files at the end. Nothing is sent anywhere.",
   "You may stop at any moment and without a reason: the button at the upper right deletes what was recorded.",
   "What is tested are the two ways of showing, not you. Some questions may have no answer in what is shown; then “I cannot tell” is right.",

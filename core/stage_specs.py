@@ -8,6 +8,10 @@ from typing import Any
 from core.states import Queue
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 
+USUAL_CORES, USUAL_FRAMES = 2, 96
+"""Of the run whose stages were timed: the sample (docs/operations/scaling.md). Of a stage that it did not need, the
+weight is an estimate."""
+
 
 @dataclass(frozen=True)
 class StageSpec:
@@ -23,7 +27,10 @@ class StageSpec:
     """Many tasks of this stage run side by side, so each uses one thread."""
     queue: Queue = Queue.CPU
     weight: float = 1.0
-    """Rough share of the run's time, for progress before anything is learnt: 10 s of two cores each."""
+    """Seconds of the clock, process and files included, on `USUAL_CORES` cores for `USUAL_FRAMES` frames: progress
+    follows them, and so does the time left before anything is learnt."""
+    per_frame: bool = False
+    """The weight grows with the number of frames."""
     reads_video: bool = False
     reads_annotations: bool = False
     weights: tuple[str, ...] = ()
@@ -55,19 +62,19 @@ STAGES: dict[str, StageSpec] = {
             *_options("input", "allow_truncated", "video_stream", "fps"),
             version=3,
             reads_video=True,
-            weight=0.2,
+            weight=1.4,
         ),
         _spec(
             "annotations",
             *_options("input", "time_convention", "annotation_format"),
             version=4,
             reads_annotations=True,
-            weight=0.1,
+            weight=0.7,
         ),
-        _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
-        _spec("pictures", reads_video=True, weight=0.3),
-        _spec("features", "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
-        _spec("motion", weight=0.4),
+        _spec("frames", "frames", "roi", "overrides", version=3, reads_video=True, weight=5.3, per_frame=True),
+        _spec("pictures", reads_video=True, weight=2.7, per_frame=True),
+        _spec("features", "features", version=3, fan_out=True, weight=22, per_frame=True, weights=(DISK_WEIGHTS,)),
+        _spec("motion", weight=2.3, per_frame=True),
         _spec(
             "focal",
             *_options("camera", "model", "principal_point", "focal_span", "focal_spans"),
@@ -78,25 +85,32 @@ STAGES: dict[str, StageSpec] = {
             "seed",
             version=4,
             fan_out=True,
-            weight=7,
+            weight=32,
         ),
-        _spec("camera", *_LENS, version=4, weight=0.1),
+        _spec("camera", *_LENS, version=4, weight=0.5),
         _spec(
-            "matches", *_MATCHER, "matching.window", version=4, fan_out=True, weight=45, weights=(LIGHTGLUE_WEIGHTS,)
+            "matches",
+            *_MATCHER,
+            "matching.window",
+            version=4,
+            fan_out=True,
+            weight=12,
+            per_frame=True,
+            weights=(LIGHTGLUE_WEIGHTS,),
         ),
-        _spec("bridge", *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
-        _spec("graph", weight=0.3),
-        _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=25),
-        _spec("reduce_coarse", "model.veto", version=2, weight=0.1),
-        _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=21),
-        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.1),
-        _spec("prune", weight=0.1),
-        _spec("section", "mapper", "seed", fan_out=True, weight=0.5),
-        _spec("reduce_parts", "model.prefer_verified", version=2, weight=0.1),
-        _spec("reverify", *_LENS, "verification", "seed", version=2, weight=0.3),
-        _spec("perspective", "mapper", "seed", weight=0.5),
-        _spec("reduce_perspective", weight=0.1),
-        _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
+        _spec("bridge", *_MATCHER, version=3, weight=1.3, per_frame=True, weights=(LIGHTGLUE_WEIGHTS,)),
+        _spec("graph", weight=1.1, per_frame=True),
+        _spec("coarse", "mapper", "seed", version=3, fan_out=True, weight=12, per_frame=True),
+        _spec("reduce_coarse", "model.veto", version=2, weight=0.6),
+        _spec("refine", "mapper", "seed", version=3, fan_out=True, weight=12, per_frame=True),
+        _spec("reduce_refine", "model.veto", "model.prefer_verified", version=4, weight=0.9),
+        _spec("prune", weight=0.6),
+        _spec("section", "mapper", "seed", fan_out=True, weight=1, per_frame=True),
+        _spec("reduce_parts", "model.prefer_verified", version=2, weight=0.6),
+        _spec("reverify", *_LENS, "verification", "seed", version=2, weight=0.8, per_frame=True),
+        _spec("perspective", "mapper", "seed", weight=1, per_frame=True),
+        _spec("reduce_perspective", weight=0.6),
+        _spec("confirm", "mapper", "model.confirm", "model.veto", "seed", version=4, weight=1.5, per_frame=True),
         _spec(
             "extend",
             "mapper",
@@ -105,13 +119,14 @@ STAGES: dict[str, StageSpec] = {
             "seed",
             "compute.threads",
             version=13,
-            weight=18,
+            weight=63,
+            per_frame=True,
         ),
-        _spec("pieces", "mapper", "model.further", "seed", weight=0.5),
+        _spec("pieces", "mapper", "model.further", "seed", weight=1.6),
         _spec(
             "undistort",
             *_options("dense", "method", "views", "sources", "max_image_size_px", "scale", "max_stretch"),
-            weight=1,
+            weight=2.4,
         ),
         _spec(
             "depth",
@@ -121,7 +136,7 @@ STAGES: dict[str, StageSpec] = {
             version=2,
             fan_out=True,
             queue=Queue.GPU,
-            weight=24,
+            weight=60,
         ),
         _spec(
             "geometric",
@@ -131,10 +146,10 @@ STAGES: dict[str, StageSpec] = {
             version=2,
             fan_out=True,
             queue=Queue.GPU,
-            weight=21,
+            weight=67,
         ),
-        _spec("fuse", "fusion", weight=3),
-        _spec("mesh", "mesh", weight=2),
+        _spec("fuse", "fusion", weight=19),
+        _spec("mesh", "mesh", weight=62),
         _spec("row", "seed", version=2, weight=3),
         _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", version=3, weight=1),
         _spec("map_defects", "mapping", version=11, weight=0.6),
@@ -145,9 +160,9 @@ STAGES: dict[str, StageSpec] = {
             "scale",
             *_options("row", "radius_mm", "radius_sigma_mm", "radius_at"),
             version=11,
-            weight=0.5,
+            weight=7.7,
         ),
-        _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=1),
-        _spec("viewer", version=5, weight=2),
+        _spec("gallery", "gallery", "mapping.method", version=7, reads_video=True, weight=29),
+        _spec("viewer", version=5, weight=29, per_frame=True),
     )
 }

@@ -34,7 +34,7 @@ def _spec(name: str, **more: Any) -> StageSpec:
 GRAPH = Graph(
     {
         "split": _spec("split", reads_video=True),
-        "part": _spec("part", fan_out=True, weight=10),
+        "part": _spec("part", fan_out=True, weight=3),
         "join": _spec("join"),
         "confirm": _spec("confirm"),
     },

@@ -196,8 +196,8 @@ def listeners_on(host: str, port: int) -> list[socket.socket]:
                 one.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
             one.bind(address)
     except OSError as error:
-        for one in made:
-            one.close()
+        for bound in made:
+            bound.close()
         message = f"the server cannot listen on '{host}', port {port}: {error.strerror}"
         raise BadInput(message, code="cannot_listen", where="--port") from None
     if not made:

@@ -129,9 +129,12 @@ def test_of_many_that_come_at_once_few_are_taken_in_before_others_are_served(bac
 
     async def serve() -> list[int]:
         loop, looked = asyncio.get_running_loop(), 0
-        server = await loop.create_server(
-            lambda: rounds.append(looked) or asyncio.Protocol(), sock=listener, backlog=config.backlog
-        )
+
+        def taken_in() -> asyncio.Protocol:
+            rounds.append(looked)
+            return asyncio.Protocol()
+
+        server = await loop.create_server(taken_in, sock=listener, backlog=config.backlog)
         with ExitStack() as opened:
             for _ in range(200):  # in this very turn of the loop, so that all of them knock before it looks
                 opened.enter_context(socket.create_connection(listener.getsockname(), timeout=10))

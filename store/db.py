@@ -68,7 +68,7 @@ class Database:
         self.engine = make_engine(url)
         self._writer = self.engine.execution_options(bladeatlas_write=True)
         self.is_sqlite = self.engine.dialect.name == "sqlite"
-        self._turn = threading.Lock()
+        self._turn = threading.RLock()
         """Of this process's writers on SQLite: there they would ask for its lock again and again, with growing pauses
         in which others come first."""
 

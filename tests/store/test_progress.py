@@ -28,7 +28,7 @@ def replay(recording: Recording, slots: int, *, told: bool) -> list[tuple[float,
     settings, facts = Settings.model_validate(recording.settings), dict[str, Facts]()
     running: list[tuple[float, str, float]] = []
     """When it ends, which it is, when it began."""
-    now, found = 0.0, list[tuple[float, dict[str, StageCount]]]()
+    moment, found = 0.0, list[tuple[float, dict[str, StageCount]]]()
     while True:
         plan = CORE_GRAPH.expand(settings, facts)
         under_way = {key for _, key, _ in running}
@@ -39,15 +39,15 @@ def replay(recording: Recording, slots: int, *, told: bool) -> list[tuple[float,
         ]
         for key in ready[: slots - len(running)]:
             took = recording.tasks[key].slot_s if key in recording.tasks else UNRECORDED_S
-            heapq.heappush(running, (now + took, key, now))
+            heapq.heappush(running, (moment + took, key, moment))
         total, over = Counter(task.stage for task in plan), Counter(stage_of(key) for key in facts)
         shares = dict.fromkeys(total, 0.0)
         for until, key, began in running:
-            shares[stage_of(key)] += (now - began) / (until - began) if told else 0.0
-        found.append((now, {stage: StageCount(total[stage], over[stage], shares[stage]) for stage in total}))
+            shares[stage_of(key)] += (moment - began) / (until - began) if told else 0.0
+        found.append((moment, {stage: StageCount(total[stage], over[stage], shares[stage]) for stage in total}))
         if not running:
             return found
-        now, key, _ = heapq.heappop(running)
+        moment, key, _ = heapq.heappop(running)
         facts[key] = dict(recording.tasks[key].facts) if key in recording.tasks else {}
 
 
@@ -55,8 +55,8 @@ def replay(recording: Recording, slots: int, *, told: bool) -> list[tuple[float,
 def test_no_tenth_of_progress_takes_a_quarter_of_the_time(slots: int) -> None:
     seen = replay(read_recording(RECORDED), slots, told=False)  # even if no task tells how far it is
     end = seen[-1][0]
-    points = [(0.0, 0.0), *((now, plan_share(CORE_GRAPH, counts)) for now, counts in seen)]
-    reached = [min(now for now, share in points if share >= tenth / 100) for tenth in range(101)]
+    points = [(0.0, 0.0), *((moment, plan_share(CORE_GRAPH, counts)) for moment, counts in seen)]
+    reached = [min(moment for moment, share in points if share >= tenth / 100) for tenth in range(101)]
     slowest = max(reached[i + 10] - reached[i] for i in range(91))
     assert slowest < 0.25 * end, (slowest / end, [round(when / end, 2) for when in reached[::10]])
 
@@ -65,11 +65,11 @@ def test_no_tenth_of_progress_takes_a_quarter_of_the_time(slots: int) -> None:
 def test_the_time_left_holds_the_end_from_the_first_task_on(slots: int) -> None:
     seen = replay(read_recording(RECORDED), slots, told=True)
     end = seen[-1][0]
-    for now, counts in seen[:-1]:
+    for moment, counts in seen[:-1]:
         stages = [shown(name, counts.get(name, StageCount(0, 0)), counts) for name in CORE_GRAPH.stages]
-        counted = (96.0, 96.0) if now > 10 else (24.0, 600.0)
+        counted = (96.0, 96.0) if moment > 10 else (24.0, 600.0)
         low, high = plan_eta(stages, Expectation(CORE_GRAPH, {}, slots, counted))
-        assert low <= end - now <= high, (now, low, end - now, high)
+        assert low <= end - moment <= high, (moment, low, end - moment, high)
 
 
 def shown(name: str, count: StageCount, counts: dict[str, StageCount]) -> StageStatus:

@@ -1,7 +1,8 @@
 """Every request that would change something comes into the audit log, accepted or refused, before it is answered.
 
 So no client ever holds an answer that the log does not know. What strangers send, and requests beyond an account's
-rate, could fill a disk: of these the first of a kind in a minute has a row, and the next one says how many came since.
+limits, could fill a disk and keep the database busy: of these the first of a kind in a minute has a row, and the next
+one says how many came since.
 """
 
 from __future__ import annotations
@@ -9,13 +10,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, MutableMapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from http import HTTPStatus
 from typing import Any
 
 from sqlalchemy.exc import SQLAlchemyError
-from starlette.concurrency import run_in_threadpool
 
 from api.auth import Caller
+from api.threads import LimitedThreads
 from core.errors import BladeAtlasError
 from store.audit import AuditLog, Deed
 from store.json_log import logger
@@ -24,8 +26,10 @@ _WRITES = ("POST", "PUT", "PATCH", "DELETE")
 """Other methods change nothing: no route has one that is not known."""
 _BELOW = "/v1/"
 _EVERY_S = 60.0
-_MANY = "too_many_requests"
+_THREADS = 4
 _log = logger("bladeatlas.audit")
+_write = LimitedThreads(_THREADS).run
+"""Not in the threads of all requests: writers wait for each other, and those who only ask would wait for them."""
 _Kind = tuple[str, str, str, int, str]
 
 
@@ -48,13 +52,14 @@ class Auditor:
         if deed is None:
             return
         try:
-            await run_in_threadpool(self.log.write, deed)
+            await _write(partial(self.log.write, deed))
         except (SQLAlchemyError, BladeAtlasError) as error:
             _log.error("not_written", error=type(error).__name__, **vars(deed))
 
     def _in_turn(self, deed: Deed) -> Deed | None:
         """The entry to write; None for one of many, which the next entry of its kind counts."""
-        if deed.status < HTTPStatus.BAD_REQUEST or (deed.account_id and not deed.code.startswith(_MANY)):
+        beyond = deed.status == HTTPStatus.TOO_MANY_REQUESTS
+        if deed.status < HTTPStatus.BAD_REQUEST or (deed.account_id and not beyond):
             return deed
         kind = (deed.account_id, deed.key_id, deed.action, deed.status, deed.code)
         last, since = self._counted.get(kind, (float("-inf"), 0))

@@ -7,7 +7,7 @@ in requests of the server's own pages, and for changes only beside a header that
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated
@@ -18,6 +18,7 @@ from starlette.concurrency import run_in_threadpool
 
 from api.problems import Refused
 from api.state import State, state_of
+from api.threads import WHOSE
 from api.trust import is_loopback_address, is_own_site
 from store.account_models import DEFAULT_ACCOUNT, USUAL_SCOPES, Scope
 from store.keys import KeyView, utc_now
@@ -64,6 +65,7 @@ async def caller(
     state = state_of(request)
     found = await _identified(request, state, credentials)
     request.state.caller = found  # for the audit log, also of requests that are refused below
+    WHOSE.set(found.owner)
     if not state.rate.spend(found.owner):
         await run_in_threadpool(state.rate.spend_slowly, found.owner)
     return found
@@ -110,6 +112,7 @@ async def reader_or_link(
     if linked is not None and signature is not None and expires is not None and signature.isascii():
         links, given = Links(state.services.db), Signature(expires, signature)
         owner = await run_in_threadpool(links.owner, linked[1], linked[2], given)
+    WHOSE.set(owner or "")
     if owner is None:
         detail = "this link is not good, or its time is over, or its account ended its links"
         raise Refused(HTTPStatus.FORBIDDEN, "bad_link", detail, where="signature")
@@ -146,10 +149,10 @@ def _is_loopback(request: Request) -> bool:
     return host in ("localhost", "") or is_loopback_address(host)  # "": a socket of this machine
 
 
-def requires(scope: Scope) -> Callable[[Caller], Caller]:
+def requires(scope: Scope) -> Callable[[Caller], Awaitable[Caller]]:
     """A dependency: the caller, who has this scope."""
 
-    def check(found: Annotated[Caller, Depends(caller)]) -> Caller:
+    async def check(found: Annotated[Caller, Depends(caller)]) -> Caller:  # a plain function would take a thread
         found.require(scope)
         return found
 

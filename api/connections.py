@@ -1,7 +1,8 @@
 """Connections of the server: how many, and how long one may take to say what it wants.
 
 uvicorn ends a connection that is idle after an answer, but waits for ever for a first request, and for the rest of one
-whose header has begun. Here each has a few seconds for it. When as many are open as may be, the one that has waited
+whose header has begun. Here each has a few seconds for it. Of those that come at once few are
+taken in before others are answered. When as many are open as may be, the one that has waited
 longest without a whole request gives way to the new one; a new one is refused only when all others are being served.
 """
 
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import resource
+import socket
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,6 +19,7 @@ import uvicorn
 from fastapi import FastAPI
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from core.errors import BadInput
 from store.json_log import logger
 from store.settings import DeploymentSettings
 
@@ -26,6 +29,13 @@ _DESCRIPTORS = 65_536
 """As many as the process asks for, where it may have them."""
 _OTHER_DESCRIPTORS = 256
 """Kept for what is no connection: the database, children, logs."""
+_TAKEN_AT_ONCE = 16
+"""New connections between two looks at those that are open; uvicorn takes 2048, in which time nobody is answered."""
+_KNOCKING = 4096
+"""Connections that the system may keep until they are taken."""
+_UNSENT_BYTES = 128 << 10
+"""What the system takes for a client beyond what is on its way. Its own bound are megabytes, which would all be made
+and kept for one that asks for a large table and does not read."""
 _PER_CONNECTION = 2
 """One is its own, one the file that it sends or receives."""
 _BUSY = (
@@ -150,7 +160,49 @@ def config_of(app: FastAPI, settings: DeploymentSettings, **more: Any) -> uvicor
         _log.warning("fewer_connections", most=most, asked=settings.max_connections, meaning=meaning)
     gate = ConnectionGate(max(1, most), settings.header_seconds)
     protocol = type("GatedProtocol", (LimitedProtocol,), {"gate": gate})
-    return uvicorn.Config(app, http=protocol, **more)
+    return uvicorn.Config(app, http=protocol, backlog=_TAKEN_AT_ONCE, **more)
+
+
+class Listener(socket.socket):
+    """A socket that keeps many connections waiting, however few the event loop takes at once.
+
+    asyncio has one number for both.
+    """
+
+    def listen(self, backlog: int = _KNOCKING, /) -> None:
+        """Listen; the number is not looked at."""
+        super().listen(max(backlog, _KNOCKING))
+
+
+def listeners_on(host: str, port: int) -> list[socket.socket]:
+    """Bound sockets for every address of a host.
+
+    Raises:
+        BadInput: an address is no one of this machine, or is in use.
+    """
+    made: list[socket.socket] = []
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        for family, kind, protocol, _, address in dict.fromkeys(found):
+            try:
+                one = Listener(family, kind, protocol)
+            except OSError:  # a name may have an address of a family that this system does not speak
+                continue
+            made.append(one)
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+                one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, _UNSENT_BYTES)
+            if family == socket.AF_INET6:
+                one.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+            one.bind(address)
+    except OSError as error:
+        for bound in made:
+            bound.close()
+        message = f"the server cannot listen on '{host}', port {port}: {error.strerror}"
+        raise BadInput(message, code="cannot_listen", where="--port") from None
+    if not made:
+        raise BadInput(f"'{host}' has no address that can be listened on", code="cannot_listen", where="--host")
+    return made
 
 
 def _raise_descriptors() -> int:

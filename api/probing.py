@@ -21,6 +21,8 @@ from store.settings import DeploymentSettings
 
 _ENTRY = "core.intake"
 _SIDE_BY_SIDE = 2
+_SPARE = 1
+"""One more for an account of which none is looked into: two videos made to take long may not keep it waiting."""
 _TIMEOUT_FACTOR = 3.0
 """The limit is one of processor time; on the clock a busy machine may take so many times as long."""
 
@@ -41,6 +43,7 @@ class Prober:
             settings.max_probes_waiting,
             settings.max_probes_waiting_per_owner,
             settings.probe_wait_seconds,
+            spare=_SPARE,
         )
 
     async def check(self, owner: str, recordings: Sequence[Recording], settings: Settings) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -51,6 +52,7 @@ _WAIT_S = {
     HTTPStatus.SERVICE_UNAVAILABLE: "5",
     HTTPStatus.INSUFFICIENT_STORAGE: "60",
 }
+_Handler = Callable[[Request, Exception], JSONResponse]
 _UNREACHABLE = "the database does not answer"
 
 log = logger("bladeatlas.api")
@@ -122,13 +124,22 @@ def not_found(what: str) -> Refused:
 
 def install(app: FastAPI) -> None:
     """Answer every error of `app` as a problem."""
-    app.add_exception_handler(BladeAtlasError, _expected)
-    app.add_exception_handler(Refused, _refused)
-    app.add_exception_handler(RequestValidationError, _invalid)
-    app.add_exception_handler(HTTPException, _http)
-    for kind in (OperationalError, InterfaceError, PoolTimeout, DBAPIError):
-        app.add_exception_handler(kind, _database)
-    app.add_exception_handler(Exception, _unexpected)
+    kinds = (OperationalError, InterfaceError, PoolTimeout, DBAPIError)
+    handlers: dict[type[Exception], _Handler] = {
+        BladeAtlasError: _expected,
+        Refused: _refused,
+        RequestValidationError: _invalid,
+        HTTPException: _http,
+        **dict.fromkeys(kinds, _database),
+        Exception: _unexpected,
+    }
+    for kind, handler in handlers.items():
+        app.add_exception_handler(kind, partial(_at_once, handler))
+
+
+async def _at_once(handler: _Handler, request: Request, error: Exception) -> JSONResponse:
+    """The handler's answer on the event loop: a plain function would take one of the threads, all of which may wait."""
+    return handler(request, error)
 
 
 def answer(request: Request, error: Refused | SQLAlchemyError) -> JSONResponse:

@@ -23,7 +23,7 @@ from store.leasing import input_files, metadata_of
 from store.models import LEASABLE, Inspection
 from store.publishing import ArtifactRows
 from store.status import PUBLISH, InspectionStatus, StageStatus, Statuses
-from store.timings import Timings, learn_timings, plan_eta, stage_eta
+from store.timings import Expectation, Timings, expected_frames, learn_timings, plan_eta, stage_eta
 
 _LEARN_EVERY_S = 60.0
 _REMEMBERED = 512
@@ -71,6 +71,7 @@ class Resources:
     services: Services
     _timings: Timings = field(default_factory=dict)
     _learnt_at: float = float("-inf")
+    _frames: OrderedDict[str, tuple[float, float]] = field(default_factory=OrderedDict)
     _published: OrderedDict[tuple[str, int], Published] = field(default_factory=OrderedDict)
     _versions: Mapping[str, str] = field(default_factory=all_versions)
 
@@ -85,8 +86,8 @@ class Resources:
 
     def resource(self, status: InspectionStatus) -> Resource:
         """The resource of one inspection."""
-        row, timings = status.row, self._learnt()
-        left = self._eta(status, timings)
+        row, by = status.row, self.expectation(status.row)
+        left = self._eta(status, by)
         published = self._report(row) if row.published else Published((), self._versions)
         return Resource.model_validate(
             {
@@ -96,7 +97,7 @@ class Resources:
                 "attempt": row.attempt,
                 "progress": round(status.progress, 4),
                 "eta_s": left,
-                "stages": [self.stage(stage, timings) for stage in status.stages],
+                "stages": [self.stage(stage, by) for stage in status.stages],
                 "queue": _queue(status, left),
                 "cancellable": row.state in LEASABLE,
                 "label": row.label,
@@ -122,10 +123,19 @@ class Resources:
             }
         )
 
-    def stage(self, stage: StageStatus, timings: Timings | None = None) -> StageItem:
+    def expectation(self, row: Inspection) -> Expectation:
+        """What the time that an inspection still needs is told from."""
+        frames = self._frames.get(row.id)
+        if frames is None:
+            frames = expected_frames(self.services.db, row)
+            if frames[0] == frames[1]:  # they are counted
+                self._frames[row.id] = frames
+                if len(self._frames) > _REMEMBERED:
+                    self._frames.popitem(last=False)
+        return Expectation(self.services.graph, self._learnt(), self.services.settings.worker_count(), frames)
+
+    def stage(self, stage: StageStatus, by: Expectation) -> StageItem:
         """One stage."""
-        learnt = self._learnt() if timings is None else timings
-        workers = self.services.settings.worker_count()
         return StageItem(
             name=stage.name,
             state=stage.state,
@@ -133,13 +143,13 @@ class Resources:
             total=stage.count.total,
             progress=round(stage.count.share, 4),
             started_at=stage.started_at,
-            eta_s=stage_eta(stage, self.services.graph, learnt, workers),
+            eta_s=stage_eta(stage, by),
         )
 
-    def _eta(self, status: InspectionStatus, timings: Timings) -> Interval | None:
+    def _eta(self, status: InspectionStatus, by: Expectation) -> Interval | None:
         if not status.active or status.state == InspectionState.CANCELLING or status.stage == PUBLISH:
             return None
-        return plan_eta(status.stages, self.services.graph, timings, self.services.settings.worker_count())
+        return plan_eta(status.stages, by)
 
     def _learnt(self) -> Timings:
         if time.monotonic() - self._learnt_at > _LEARN_EVERY_S:

@@ -73,7 +73,7 @@ class StageItem(BaseModel):
     total: int = Field(description="tasks known so far")
     progress: float = Field(ge=0, le=1, description="share of this stage, running tasks included")
     started_at: datetime | None
-    eta_s: Interval | None = Field(description="[low, high] seconds left, from former inspections; null = not known")
+    eta_s: Interval | None = Field(description="[low, high] seconds left, from former inspections or a guess")
 
 
 class Queue(BaseModel):
@@ -132,7 +132,7 @@ class Resource(BaseModel):
     stage: str | None = Field(description="where it is; `publish` while the files are put in place; null when over")
     attempt: int = Field(ge=1, description="grows with every retry")
     progress: float = Field(ge=0, le=1, description="never backwards within an attempt")
-    eta_s: Interval | None = Field(description="[low, high] seconds left in all; null = not known")
+    eta_s: Interval | None = Field(description="[low, high] seconds left in all; null = it is over, or about to be")
     stages: list[StageItem]
     queue: Queue | None = Field(description="null unless queued")
     cancellable: bool

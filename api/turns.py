@@ -25,8 +25,10 @@ class Turns:
     side_by_side: int
     max_waiting: int
     max_waiting_per_owner: int
-    wait_s: float
-    """Who got no turn after so many seconds is sent away."""
+    wait_s: float | None
+    """Who got no turn after so many seconds is sent away; None: nobody is."""
+    spare: int = 0
+    """So many more run at once for owners that have none: turns may be long, and none of them can be taken back."""
     _running: Counter[str] = field(default_factory=Counter)
     _waiting: dict[str, deque[asyncio.Future[None]]] = field(default_factory=dict)
     _last: dict[str, int] = field(default_factory=dict)
@@ -48,7 +50,7 @@ class Turns:
 
     def require_room(self, owner: str) -> None:
         """Refuse who would have to wait where no more may wait: 429 for this owner's own fault, else 503."""
-        if self._is_free():
+        if self._is_free(owner):
             return
         own = len(self._waiting.get(owner, ()))
         if own >= self.max_waiting_per_owner:
@@ -64,11 +66,12 @@ class Turns:
         """How many wait, of all owners."""
         return sum(map(len, self._waiting.values()))
 
-    def _is_free(self) -> bool:
-        return self._running.total() < self.side_by_side
+    def _is_free(self, owner: str) -> bool:
+        running = self._running.total()
+        return running < self.side_by_side + (0 if owner in self._running else self.spare)
 
     async def _take(self, owner: str) -> None:
-        if self._is_free():
+        if self._is_free(owner):
             self._begin(owner)
             return
         self.require_room(owner)
@@ -84,7 +87,7 @@ class Turns:
                 self._leave(owner, mine)
             if not isinstance(error, TimeoutError):
                 raise
-            detail = f"no turn came within {self.wait_s:g} s (probe_wait_seconds); try again later"
+            detail = f"no turn came within {self.wait_s} s (probe_wait_seconds); try again later"
             raise _refused(HTTPStatus.SERVICE_UNAVAILABLE, "probe_wait", detail) from None
 
     def _begin(self, owner: str) -> None:
@@ -103,8 +106,8 @@ class Turns:
         """End a turn and begin the next."""
         self._running[owner] -= 1
         self._running = +self._running  # forgets owners without a turn
-        while self._waiting and self._is_free():
-            following = min(self._waiting, key=lambda name: (self._running[name], self._last.get(name, 0)))
+        while served := [name for name in self._waiting if self._is_free(name)]:
+            following = min(served, key=lambda name: (self._running[name], self._last.get(name, 0)))
             mine = self._waiting[following].popleft()
             if not self._waiting[following]:
                 del self._waiting[following]

@@ -9,6 +9,8 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
+from bench.service.hostile import SECONDS as HOSTILE_S
+from bench.service.hostile import hostile
 from bench.service.interrupted import interrupted
 from bench.service.load import load
 from bench.service.overhead import overhead
@@ -22,7 +24,7 @@ from store.settings import available_cores
 
 COMPARISONS = ("stages", "disk", "matching", "windows", "dense", "mapping")
 """Of a finished run with other programs."""
-SERVICE = ("uploads", "downloads", "interrupted", "load", "overhead", "scaling")
+SERVICE = ("uploads", "downloads", "interrupted", "load", "hostile", "overhead", "scaling")
 """Of a whole deployment."""
 
 
@@ -55,23 +57,25 @@ def add_service_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `service`."""
     _add_choice(parser, SERVICE)
     parser.add_argument("--preset", default="default", choices=PRESET_NAMES, help="of the sample's jobs (default)")
+    parser.add_argument("--seconds", type=float, default=HOSTILE_S, metavar="N", help="of `hostile` (600)")
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
 
 
 def service(arguments: argparse.Namespace) -> None:
     """Run the chosen measurements, each in a folder of its own that is removed."""
     names = _chosen(arguments.only, SERVICE, "measurement")
-    if arguments.repeat < 1:
-        raise BadInput("--repeat is at least 1", where="--repeat")
-    _print(_measured(names, arguments.repeat, arguments.preset), as_json=arguments.json)
+    if arguments.repeat < 1 or arguments.seconds <= 0:
+        raise BadInput("--repeat is at least 1, --seconds above 0", where="--repeat")
+    _print(_measured(names, arguments.repeat, arguments.preset, arguments.seconds), as_json=arguments.json)
 
 
-def _measured(names: Sequence[str], repeat: int, preset: str) -> Iterator[Table]:
+def _measured(names: Sequence[str], repeat: int, preset: str, seconds: float) -> Iterator[Table]:
     known: dict[str, Callable[[Path], Table]] = {
         "uploads": lambda folder: uploads(folder, repeat),
         "downloads": lambda folder: downloads(folder, repeat),
         "interrupted": interrupted,
         "load": load,
+        "hostile": lambda folder: hostile(folder, seconds),
         "overhead": lambda folder: overhead(folder, repeat, preset),
         "scaling": lambda folder: scaling(folder, repeat, preset),
     }

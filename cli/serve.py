@@ -14,7 +14,7 @@ from fastapi import FastAPI
 from filelock import FileLock, Timeout
 
 from api.app import create_app
-from api.connections import config_of
+from api.connections import config_of, listeners_on
 from api.services import make_services
 from api.trust import is_loopback_address
 from core.errors import BadInput, BladeAtlasError
@@ -148,8 +148,6 @@ def _listen(application: FastAPI, settings: DeploymentSettings, host: str, port:
     config = config_of(
         application,
         settings,
-        host=host,
-        port=port,
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=_DRAIN_S,
@@ -158,6 +156,9 @@ def _listen(application: FastAPI, settings: DeploymentSettings, host: str, port:
     # uvicorn raises the signal once more at its end: by then it has done its work, and runners are still to be stopped.
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: None)
-    server.run()
+    with ExitStack() as listening:
+        sockets = [listening.enter_context(one) for one in listeners_on(host, port)]
+        _log.info("listening", host=host, port=sockets[0].getsockname()[1])
+        server.run(sockets)
     if not server.started:
         raise BladeAtlasError("the server could not start; the lines above say why", where="serve")

@@ -46,6 +46,10 @@ from core.products.surface import (
 from core.states import Queue
 from core.weight_files import DISK_WEIGHTS, LIGHTGLUE_WEIGHTS
 
+USUAL_CORES, USUAL_FRAMES = 2, 96
+"""Of the run whose stages were timed: the sample (docs/operations/scaling.md). Of a stage that it did not need, the
+weight is an estimate."""
+
 
 @dataclass(frozen=True)
 class StageSpec:
@@ -63,7 +67,10 @@ class StageSpec:
     """Many tasks of this stage run side by side, so each uses one thread."""
     queue: Queue = Queue.CPU
     weight: float = 1.0
-    """Rough share of the run's time, for progress before anything is learnt: 10 s of two cores each."""
+    """Seconds of the clock, process and files included, on `USUAL_CORES` cores for `USUAL_FRAMES` frames: progress
+    follows them, and so does the time left before anything is learnt."""
+    per_frame: bool = False
+    """The weight grows with the number of frames."""
     reads_video: bool = False
     reads_annotations: bool = False
     weights: tuple[str, ...] = ()
@@ -96,7 +103,7 @@ STAGES: dict[str, StageSpec] = {
             *_options("input", "allow_truncated", "video_stream", "fps"),
             version=3,
             reads_video=True,
-            weight=0.2,
+            weight=1.4,
         ),
         _spec(
             "annotations",
@@ -104,12 +111,31 @@ STAGES: dict[str, StageSpec] = {
             *_options("input", "time_convention", "annotation_format"),
             version=4,
             reads_annotations=True,
-            weight=0.1,
+            weight=0.7,
         ),
-        _spec("frames", FramesProduct, "frames", "roi", "overrides", version=3, reads_video=True, weight=0.3),
-        _spec("pictures", PicturesProduct, reads_video=True, weight=0.3),
-        _spec("features", FeaturesProduct, "features", version=3, fan_out=True, weight=26, weights=(DISK_WEIGHTS,)),
-        _spec("motion", MotionProduct, weight=0.4),
+        _spec(
+            "frames",
+            FramesProduct,
+            "frames",
+            "roi",
+            "overrides",
+            version=3,
+            reads_video=True,
+            weight=5.3,
+            per_frame=True,
+        ),
+        _spec("pictures", PicturesProduct, reads_video=True, weight=2.7, per_frame=True),
+        _spec(
+            "features",
+            FeaturesProduct,
+            "features",
+            version=3,
+            fan_out=True,
+            weight=22,
+            per_frame=True,
+            weights=(DISK_WEIGHTS,),
+        ),
+        _spec("motion", MotionProduct, weight=2.3, per_frame=True),
         _spec(
             "focal",
             FocalProduct,
@@ -121,9 +147,9 @@ STAGES: dict[str, StageSpec] = {
             "seed",
             version=4,
             fan_out=True,
-            weight=7,
+            weight=32,
         ),
-        _spec("camera", CameraProduct, *_LENS, version=4, weight=0.1),
+        _spec("camera", CameraProduct, *_LENS, version=4, weight=0.5),
         _spec(
             "matches",
             MatchesProduct,
@@ -131,22 +157,33 @@ STAGES: dict[str, StageSpec] = {
             "matching.window",
             version=4,
             fan_out=True,
-            weight=45,
+            weight=12,
+            per_frame=True,
             weights=(LIGHTGLUE_WEIGHTS,),
         ),
-        _spec("bridge", BridgeProduct, *_MATCHER, version=3, weight=1, weights=(LIGHTGLUE_WEIGHTS,)),
-        _spec("graph", GraphProduct, weight=0.3),
-        _spec("coarse", CaseProduct, "mapper", "seed", version=3, fan_out=True, weight=25),
-        _spec("reduce_coarse", ChoiceProduct, "model.veto", version=2, weight=0.1),
-        _spec("refine", CaseProduct, "mapper", "seed", version=3, fan_out=True, weight=21),
-        _spec("reduce_refine", RefinedProduct, "model.veto", "model.prefer_verified", version=4, weight=0.1),
-        _spec("prune", PruneProduct, weight=0.1),
-        _spec("section", CaseProduct, "mapper", "seed", fan_out=True, weight=0.5),
-        _spec("reduce_parts", ReducerProduct, "model.prefer_verified", version=2, weight=0.1),
-        _spec("reverify", ReverifyProduct, *_LENS, "verification", "seed", version=2, weight=0.3),
-        _spec("perspective", CaseProduct, "mapper", "seed", weight=0.5),
-        _spec("reduce_perspective", PassedProduct, weight=0.1),
-        _spec("confirm", ConfirmProduct, "mapper", "model.confirm", "model.veto", "seed", version=4, weight=6),
+        _spec("bridge", BridgeProduct, *_MATCHER, version=3, weight=1.3, per_frame=True, weights=(LIGHTGLUE_WEIGHTS,)),
+        _spec("graph", GraphProduct, weight=1.1, per_frame=True),
+        _spec("coarse", CaseProduct, "mapper", "seed", version=3, fan_out=True, weight=12, per_frame=True),
+        _spec("reduce_coarse", ChoiceProduct, "model.veto", version=2, weight=0.6),
+        _spec("refine", CaseProduct, "mapper", "seed", version=3, fan_out=True, weight=12, per_frame=True),
+        _spec("reduce_refine", RefinedProduct, "model.veto", "model.prefer_verified", version=4, weight=0.9),
+        _spec("prune", PruneProduct, weight=0.6),
+        _spec("section", CaseProduct, "mapper", "seed", fan_out=True, weight=1, per_frame=True),
+        _spec("reduce_parts", ReducerProduct, "model.prefer_verified", version=2, weight=0.6),
+        _spec("reverify", ReverifyProduct, *_LENS, "verification", "seed", version=2, weight=0.8, per_frame=True),
+        _spec("perspective", CaseProduct, "mapper", "seed", weight=1, per_frame=True),
+        _spec("reduce_perspective", PassedProduct, weight=0.6),
+        _spec(
+            "confirm",
+            ConfirmProduct,
+            "mapper",
+            "model.confirm",
+            "model.veto",
+            "seed",
+            version=4,
+            weight=1.5,
+            per_frame=True,
+        ),
         _spec(
             "extend",
             ExtendProduct,
@@ -156,14 +193,15 @@ STAGES: dict[str, StageSpec] = {
             "seed",
             "compute.threads",
             version=13,
-            weight=18,
+            weight=63,
+            per_frame=True,
         ),
-        _spec("pieces", SubmodelsProduct, "mapper", "model.further", "seed", weight=0.5),
+        _spec("pieces", SubmodelsProduct, "mapper", "model.further", "seed", weight=1.6),
         _spec(
             "undistort",
             UndistortProduct,
             *_options("dense", "method", "views", "sources", "max_image_size_px", "scale", "max_stretch"),
-            weight=1,
+            weight=2.4,
         ),
         _spec(
             "depth",
@@ -174,7 +212,7 @@ STAGES: dict[str, StageSpec] = {
             version=2,
             fan_out=True,
             queue=Queue.GPU,
-            weight=24,
+            weight=60,
         ),
         _spec(
             "geometric",
@@ -185,10 +223,10 @@ STAGES: dict[str, StageSpec] = {
             version=2,
             fan_out=True,
             queue=Queue.GPU,
-            weight=21,
+            weight=67,
         ),
-        _spec("fuse", FuseProduct, "fusion", weight=3),
-        _spec("mesh", MeshProduct, "mesh", weight=2),
+        _spec("fuse", FuseProduct, "fusion", weight=19),
+        _spec("mesh", MeshProduct, "mesh", weight=62),
         _spec("row", RowProduct, "seed", version=2, weight=3),
         _spec(
             "blades",
@@ -207,9 +245,9 @@ STAGES: dict[str, StageSpec] = {
             "scale",
             *_options("row", "radius_mm", "radius_sigma_mm", "radius_at"),
             version=11,
-            weight=0.5,
+            weight=7.7,
         ),
-        _spec("gallery", GalleryProduct, "gallery", "mapping.method", version=7, reads_video=True, weight=1),
-        _spec("viewer", ViewerProduct, version=5, weight=2),
+        _spec("gallery", GalleryProduct, "gallery", "mapping.method", version=7, reads_video=True, weight=29),
+        _spec("viewer", ViewerProduct, version=5, weight=29, per_frame=True),
     )
 }

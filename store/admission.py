@@ -86,12 +86,18 @@ class Admission:
         self._require(session, owner, ReservationKind.UPLOAD, now)
         self.require_bytes(session, owner, size, now)
 
+    def look_upload(self, owner: str) -> None:
+        """`LimitReached` when no upload could begin now. Promises nothing: saves the turn to write of a refusal."""
+        with self.db.read() as session:
+            self._require(session, owner, ReservationKind.UPLOAD, self.db.now(session))
+
     def promise_form(self, owner: str, size: int) -> FormPromise:
         """Promise a form of `size` bytes that is about to come in; it counts as an open upload until its end.
 
         Raises:
             LimitReached, DiskFull: as `admit_upload`.
         """
+        self.look_upload(owner)
         with self.db.write() as session:
             self.admit_upload(session, owner, size)
             held = self._reserve(session, owner, ReservationKind.UPLOAD, size, _FORM_S)

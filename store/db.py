@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -67,6 +68,9 @@ class Database:
         self.engine = make_engine(url)
         self._writer = self.engine.execution_options(bladeatlas_write=True)
         self.is_sqlite = self.engine.dialect.name == "sqlite"
+        self._turn = threading.RLock()
+        """Of this process's writers on SQLite: there they would ask for its lock again and again, with growing pauses
+        in which others come first."""
 
     @contextmanager
     def read(self) -> Iterator[Session]:
@@ -86,12 +90,22 @@ class Database:
     def write(self) -> Iterator[Session]:
         """A transaction that commits when the block ends well and rolls back otherwise."""
         try:
-            with Session(self._writer, expire_on_commit=False) as session, session.begin():
+            with self._in_turn(), Session(self._writer, expire_on_commit=False) as session, session.begin():
                 yield session
         except OperationalError as error:
             if self.is_sqlite and _is_full(error):
                 raise DiskFull("the plan cannot be written: no space left on its disk", where="plan") from error
             raise
+
+    @contextmanager
+    def _in_turn(self) -> Iterator[None]:
+        """Wait for the other writers of this process; after as long as SQLite would wait it is left to SQLite."""
+        held = self.is_sqlite and self._turn.acquire(timeout=_BUSY_MS / 1000)
+        try:
+            yield
+        finally:
+            if held:
+                self._turn.release()
 
     def now(self, session: Session) -> datetime:
         """The time that leases are measured with: the server's, so that machines need not agree."""

@@ -166,7 +166,7 @@ class DeploymentSettings(BaseSettings):
     probe_seconds: float = Field(8.0, gt=0, description="processor time to look into an uploaded video, in seconds")
     probe_memory_bytes: int = Field(2 << 30, gt=0, description="memory limit of the same")
     probe_wait_seconds: float = Field(
-        60.0, gt=0, description="two videos are looked into at a time, in turn by owner; who waits longer gets 503"
+        60.0, gt=0, description="two looks into videos run at a time, a third for an owner with none; then it is 503"
     )
     max_probes_waiting: int = Field(
         200, ge=0, description="requests of one server that wait for such a look, at most; more get 503"

@@ -1,4 +1,7 @@
-"""What former inspections took, and from it how long the rest of a plan may take: intervals, never one number."""
+"""What former inspections took, and from it how long the rest of a plan may take: intervals, never one number.
+
+A stage that no former inspection had is guessed from its weight, the seconds that were measured on the sample.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,9 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import func, select
+from sqlalchemy import select
 
+from core.stage_specs import USUAL_CORES, USUAL_FRAMES, StageSpec
 from core.states import InspectionState, StageState, TaskState
 from store.db import Database
 from store.graph import Graph
@@ -22,6 +26,16 @@ _FORMER = 50
 """Inspections that are learnt from, the latest first."""
 _ALONE = (0.5, 2.0)
 """How far the next one may lie from the only one that is known."""
+_GUESSED = (0.4, 2.5)
+"""How far a stage may lie from its weight: machines and videos differ."""
+_OF_PLAN = (0.7, 1.4)
+"""How far a plan may lie from its stages: they wait for each other, and for what else the machine does."""
+_PUBLISHED_S = 5.0
+"""Until the files of a plan that is over can be fetched, at most."""
+_FEW_FRAMES = 24
+"""A video whose frames are not counted yet has at least so many; the settings say how many at most."""
+_FRAMES_TASK, _FRAMES_FACT = "frames", "n_frames"
+"""The task after which the number of frames is known, and its name among the facts of it."""
 
 
 @dataclass(frozen=True)
@@ -45,18 +59,20 @@ def learn_timings(db: Database) -> Timings:
         .limit(_FORMER)
         .subquery()
     )
-    query = (
-        select(Task.stage, func.count(), func.sum(Task.seconds))
-        .where(
-            Task.inspection_id.in_(select(latest.c.id)), Task.state == TaskState.SUCCEEDED, Task.seconds.is_not(None)
-        )
-        .group_by(Task.inspection_id, Task.stage)
+    query = select(Task.inspection_id, Task.stage, Task.seconds, Task.started_at, Task.ended_at, Task.reused).where(
+        Task.inspection_id.in_(select(latest.c.id)), Task.state == TaskState.SUCCEEDED, Task.seconds.is_not(None)
     )
-    per_task, per_plan = defaultdict(list), defaultdict(list)
+    taken: dict[tuple[str, str], list[float]] = defaultdict(list)
     with db.read() as session:
-        for stage, n, seconds in session.execute(query):
-            per_task[stage].append(float(seconds or 0.0) / n)
-            per_plan[stage].append(float(seconds or 0.0))
+        for row in session.execute(query):
+            whole = 0.0  # with the start of its process and the storing of its files, unless another run did these
+            if row.started_at is not None and row.ended_at is not None and not row.reused:
+                whole = (row.ended_at - row.started_at).total_seconds()
+            taken[row.inspection_id, row.stage].append(max(float(row.seconds), whole))
+    per_task, per_plan = defaultdict(list), defaultdict(list)
+    for (_, stage), seconds in taken.items():
+        per_task[stage].append(sum(seconds) / len(seconds))
+        per_plan[stage].append(sum(seconds))
     return {stage: StageTiming(_interval(per_task[stage]), _interval(per_plan[stage])) for stage in per_task}
 
 
@@ -68,33 +84,64 @@ def _interval(values: Sequence[float]) -> Interval:
     return (tenths[0], tenths[-1])
 
 
-def stage_eta(stage: StageStatus, graph: Graph, timings: Timings, workers: int) -> Interval | None:
-    """Seconds that are left of one stage; None when nothing is known about it."""
-    left = _left(stage, graph, timings, workers)
-    return None if left is None else (round(left[0], 1), round(left[1], 1))
+@dataclass(frozen=True)
+class Expectation:
+    """What the time that is left is told from."""
+
+    graph: Graph
+    timings: Timings
+    """Of former inspections."""
+    workers: int
+    """Tasks side by side."""
+    frames: Interval
+    """How many frames there may be."""
 
 
-def _left(stage: StageStatus, graph: Graph, timings: Timings, workers: int) -> Interval | None:
+def stage_eta(stage: StageStatus, by: Expectation) -> Interval:
+    """Seconds that are left of one stage."""
+    low, high = _left(stage, by)
+    return (round(low, 1), round(high, 1))
+
+
+def plan_eta(stages: Sequence[StageStatus], by: Expectation) -> Interval:
+    """Seconds that are left of the whole plan, until its files can be fetched."""
+    left = [_left(stage, by) for stage in stages]
+    low, high = sum(one for one, _ in left) * _OF_PLAN[0], sum(other for _, other in left) * _OF_PLAN[1]
+    return (round(low, 1), round(high + _PUBLISHED_S, 1))
+
+
+def _left(stage: StageStatus, by: Expectation) -> Interval:
     if stage.state not in (StageState.WAITING, StageState.RUNNING):
         return (0.0, 0.0)
-    timing = timings.get(stage.name)
+    spec, timing = by.graph.stages[stage.name], by.timings.get(stage.name)
     if timing is None:
-        return None
-    side_by_side = max(1, workers) if graph.stages[stage.name].fan_out else 1
+        low, high = _scaled(_guessed(spec, by), 1.0 - stage.count.share)
+        # A plan of which former ones are known may pass a stage by that they did not have.
+        return (0.0 if by.timings and not stage.count.total else low, high)
+    side_by_side = max(1, by.workers) if spec.fan_out else 1
     if not stage.count.total:
         return _scaled(timing.per_plan, 1 / side_by_side)
     left = stage.count.total * (1 - stage.count.share)
     return _scaled(timing.per_task, left / min(side_by_side, stage.count.total))
 
 
-def plan_eta(stages: Sequence[StageStatus], graph: Graph, timings: Timings, workers: int) -> Interval | None:
-    """Seconds that are left of the whole plan; None when some stage of it is unknown."""
-    etas = [_left(stage, graph, timings, workers) for stage in stages]
-    known = [eta for eta in etas if eta is not None]
-    if len(known) < len(etas):
-        return None
-    return (round(sum(low for low, _ in known), 1), round(sum(high for _, high in known), 1))
+def _guessed(spec: StageSpec, by: Expectation) -> Interval:
+    """Seconds of the clock that a whole stage may take on these workers, from those of the sample."""
+    usual = spec.weight * (USUAL_CORES / max(1, by.workers) if spec.fan_out else 1.0)
+    few, many = by.frames if spec.per_frame else (USUAL_FRAMES, USUAL_FRAMES)
+    return (usual * _GUESSED[0] * few / USUAL_FRAMES, usual * _GUESSED[1] * many / USUAL_FRAMES)
 
 
 def _scaled(interval: Interval, factor: float) -> Interval:
     return (interval[0] * factor, interval[1] * factor)
+
+
+def expected_frames(db: Database, inspection: Inspection) -> Interval:
+    """How many frames an inspection has: counted, or as its settings bound it."""
+    query = select(Task.facts).where(Task.inspection_id == inspection.id, Task.key == _FRAMES_TASK)
+    with db.read() as session:
+        counted = (session.scalar(query) or {}).get(_FRAMES_FACT)
+    if counted is not None:
+        return (float(counted), float(counted))
+    most = float(inspection.settings["frames"]["max_count"])
+    return (min(float(_FEW_FRAMES), most), most)

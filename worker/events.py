@@ -9,6 +9,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from core.errors import BladeAtlasError
+from core.stage_specs import USUAL_CORES
 from core.states import AttemptOutcome, RunState, StageState, TaskState
 from core.task_key import stage_of
 from store.graph import Graph
@@ -163,7 +164,7 @@ class Tracker:
         }
 
     def _eta(self) -> float | None:
-        """Seconds left: known tasks at the mean of their stage, the rest at what a unit of weight took so far."""
+        """Seconds left: known tasks at the mean of their stage, the rest by weight, at the pace so far."""
         took: dict[str, list[float]] = {}
         for task in self._tasks.values():
             if task.state == TaskState.SUCCEEDED and task.seconds is not None:
@@ -173,15 +174,18 @@ class Tracker:
         done_weight = sum(weights[stage] * counts[stage].share for stage in took)
         if done_weight <= 0:
             return None
-        second_per_weight = sum(sum(seconds) for seconds in took.values()) / done_weight
+        stages = self._graph.stages
+        spent = sum(sum(seconds) / (USUAL_CORES if stages[stage].fan_out else 1) for stage, seconds in took.items())
+        pace = spent / done_weight
         left = 0.0
         for stage, weight in weights.items():
             count = counts.get(stage, StageCount(0, 0))
             rest = count.total * (1 - count.share)
-            side_by_side = self._workers if self._graph.stages[stage].fan_out else 1
-            mean = sum(took[stage]) / len(took[stage]) if stage in took else None
-            seconds = rest * mean if mean is not None else weight * (1 - count.share) * second_per_weight
-            left += seconds / side_by_side
+            fan_out = stages[stage].fan_out
+            if stage in took:
+                left += rest * sum(took[stage]) / len(took[stage]) / (self._workers if fan_out else 1)
+            else:
+                left += weight * (1 - count.share) * pace * (USUAL_CORES / self._workers if fan_out else 1)
         return round(left, 1)
 
 

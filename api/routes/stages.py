@@ -17,7 +17,7 @@ from api.parameters import Text
 from api.problems import not_found, responses
 from api.schemas import EXAMPLE_STAGE, StageItem
 from api.services import Services
-from api.state import State, state_of
+from api.state import state_of
 from core.task_key import stage_of
 from store.models import Attempt
 from store.status import StageStatus, Statuses
@@ -80,11 +80,13 @@ def stages(request: Request, caller: Reader, inspection_id: str, format: Format 
     if status is None:
         raise not_found("inspection")
     workers = _workers(services, inspection_id)
-    rows = [_detail(state, stage, workers.get(stage.name, [])).model_dump(mode="json") for stage in status.stages]
+    by = state.resources.expectation(status.row)
+    items = [(state.resources.stage(stage, by), stage) for stage in status.stages]
+    rows = [_detail(item, stage, workers.get(stage.name, [])).model_dump(mode="json") for item, stage in items]
     return table(request, format, _COLUMNS, rows)
 
 
-def _detail(state: State, stage: StageStatus, workers: list[str]) -> StageDetail:
+def _detail(item: StageItem, stage: StageStatus, workers: list[str]) -> StageDetail:
     more: dict[str, Any] = {
         "ended_at": stage.ended_at,
         "attempts": stage.attempts,
@@ -93,7 +95,7 @@ def _detail(state: State, stage: StageStatus, workers: list[str]) -> StageDetail
         "peak_rss_bytes": stage.peak_rss_bytes,
         "workers": workers,
     }
-    return StageDetail.model_validate({**state.resources.stage(stage).model_dump(), **more})
+    return StageDetail.model_validate({**item.model_dump(), **more})
 
 
 def _workers(services: Services, inspection_id: str) -> dict[str, list[str]]:

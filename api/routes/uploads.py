@@ -38,7 +38,7 @@ _CHECKSUM = re.compile(r"sha256 ([A-Za-z0-9+/]{43}=)")
 _SHA256_BYTES = 32
 
 
-def speaks_tus(
+async def speaks_tus(
     request: Request,
     tus_resumable: Annotated[
         str | None, Header(description="version of the protocol: 1.0.0", examples=[VERSION])
@@ -188,8 +188,16 @@ async def create(
         known = await on_disk(partial(_sent_before, services, caller.owner, length, sha256, metadata, admit))
         if known is not None:
             return _answer(HTTPStatus.OK, _place(known))
-    upload = await run_in_threadpool(services.uploads.create, caller.owner, length, metadata, admit)
+    upload = await on_disk(partial(_begin, services, caller.owner, length, metadata, admit))
     return _answer(HTTPStatus.CREATED, _place(upload))
+
+
+def _begin(
+    services: Services, owner: str, length: int, metadata: Mapping[str, str], admit: Callable[[Session], None]
+) -> UploadView:
+    """A new upload; who has too many open is refused before a file is made and without waiting for who writes."""
+    services.admission.look_upload(owner)
+    return services.uploads.create(owner, length, metadata, admit)
 
 
 def _place(upload: UploadView) -> dict[str, str]:

@@ -14,6 +14,7 @@ from bench.soak.servers import free_port
 from bench.speed.timing import Row, Table, interleaved
 from core.settings import make_settings
 from core.states import InspectionState
+from store.account_models import DEFAULT_ACCOUNT
 from store.db import open_sqlite
 from store.files import ArtifactStore
 from store.inspections import Inspections
@@ -28,7 +29,7 @@ _MIB = 1 << 20
 
 def uploads(folder: Path, repeat: int) -> Table:
     """One file by tus into the service and by PUT into the sink, in turn."""
-    source = _random_file(folder / "upload.bin", UPLOAD_BYTES)
+    source = random_file(folder / "upload.bin", UPLOAD_BYTES)
     port = free_port()
     environment = {**os.environ, "SINK_FOLDER": str(folder)}
     command = [sys.executable, "-m", "bench.service.sink", str(port)]
@@ -57,9 +58,9 @@ def uploads(folder: Path, repeat: int) -> Table:
 
 def downloads(folder: Path, repeat: int) -> Table:
     """An artifact of 1 GiB fetched in ranges; its bytes are compared."""
-    source = _random_file(folder / "download.bin", DOWNLOAD_BYTES)
+    source = random_file(folder / "download.bin", DOWNLOAD_BYTES)
     with serving(folder / "data", {}) as server:
-        link = f"{server.url}{_publish(folder / 'data', source)}"
+        link = f"{server.url}/v1/inspections/{publish(folder / 'data', source)}/artifacts/large.bin"
         watch = MemoryWatch(server)
         target = folder / "fetched.bin"
         times = interleaved({"ranges": lambda: _fetch(link, target)}, repeat)
@@ -86,13 +87,13 @@ def _fetch(link: str, target: Path) -> None:
             whole.write(part.read_bytes())
 
 
-def _publish(data: Path, source: Path) -> str:
-    """A finished inspection with one artifact; the artifact's path on the server."""
-    stored = ArtifactStore(data / "artifacts").put("inspections/large/1/large.bin", source)
+def publish(data: Path, source: Path, owner: str = DEFAULT_ACCOUNT) -> str:
+    """A finished inspection of an account with one artifact, ``large.bin``, on a server; its id."""
     inspection_id, database = uuid.uuid4().hex, open_sqlite(data / "bladeatlas.db")
+    stored = ArtifactStore(data / "artifacts").put(f"inspections/{inspection_id}/1/large.bin", source)
     files = [InputFiles("inputs/none/video", "0" * 64, None, None)]
     with database.write() as session:
-        Inspections(database).create_in(session, inspection_id, files, make_settings(), "")
+        Inspections(database).create_in(session, inspection_id, files, make_settings(), "", owner=owner)
         row = session.get_one(Inspection, inspection_id)
         row.state, row.published = (
             InspectionState.SUCCEEDED,
@@ -110,7 +111,7 @@ def _publish(data: Path, source: Path) -> str:
             )
         )
     database.close()
-    return f"/v1/inspections/{inspection_id}/artifacts/large.bin"
+    return inspection_id
 
 
 class MemoryWatch:
@@ -133,7 +134,8 @@ class MemoryWatch:
         return self._largest
 
 
-def _random_file(path: Path, size: int) -> Path:
+def random_file(path: Path, size: int) -> Path:
+    """Write a file of about `size` bytes, whole MiB, that cannot be compressed."""
     with path.open("wb") as file:
         for _ in range(size // _MIB):
             file.write(os.urandom(_MIB))

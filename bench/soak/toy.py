@@ -51,7 +51,7 @@ def _spec(name: str, product: type[Product] = Product, **more: Any) -> StageSpec
 GRAPH = Graph(
     {
         "split": _spec("split", SplitProduct, reads_video=True),
-        "part": _spec("part", fan_out=True, weight=10),
+        "part": _spec("part", fan_out=True, weight=3),
         "join": _spec("join", JoinProduct),
         "confirm": _spec("confirm"),
     },

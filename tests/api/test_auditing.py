@@ -38,7 +38,8 @@ def entries(log: AuditLog) -> list[AuditView]:
 
 
 @pytest.mark.parametrize(
-    ("who", "code", "status"), [("", "unauthorized", 401), ("me", "too_many_requests_of_owner", 429)]
+    ("who", "code", "status"),
+    [("", "unauthorized", 401), ("me", "too_many_requests_of_owner", 429), ("me", "too_many_uploads", 429)],
 )
 def test_of_many_alike_the_next_entry_says_how_many(backend: Backend, who: str, code: str, status: int) -> None:
     log, clock = AuditLog(backend.db), Clock()

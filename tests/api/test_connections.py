@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import socket
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 
@@ -14,7 +16,8 @@ import pytest
 import uvicorn
 
 from api.app import create_app
-from api.connections import config_of
+from api.connections import config_of, listeners_on
+from core.errors import BadInput
 from tests.api.conftest import Backend, Server, wait_until
 
 _HALF = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "
@@ -117,3 +120,36 @@ def test_where_all_are_served_a_new_one_is_refused(backend: Backend, connect: Co
         wait_until(
             lambda: connect(address, b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n").recv(12)[9:12] == b"200"
         )
+
+
+def test_of_many_that_come_at_once_few_are_taken_in_before_others_are_served(backend: Backend) -> None:
+    config = config_of(create_app(backend.services), backend.services.settings)
+    listener = listeners_on("127.0.0.1", 0)[0]
+    rounds: list[int] = []
+
+    async def serve() -> list[int]:
+        loop, looked = asyncio.get_running_loop(), 0
+
+        def taken_in() -> asyncio.Protocol:
+            rounds.append(looked)
+            return asyncio.Protocol()
+
+        server = await loop.create_server(taken_in, sock=listener, backlog=config.backlog)
+        with ExitStack() as opened:
+            for _ in range(200):  # in this very turn of the loop, so that all of them knock before it looks
+                opened.enter_context(socket.create_connection(listener.getsockname(), timeout=10))
+            while len(rounds) < 200:
+                looked += 1
+                await asyncio.sleep(0)
+            server.close()
+        return rounds
+
+    taken = Counter(asyncio.run(asyncio.wait_for(serve(), 20)))
+    assert max(taken.values()) < 50, "uvicorn's own way takes all of them at once"
+
+
+def test_a_port_that_is_in_use_is_named() -> None:
+    with listeners_on("127.0.0.1", 0)[0] as other:
+        other.listen()
+        with pytest.raises(BadInput, match=r"port \d+: Address already in use"):
+            listeners_on("127.0.0.1", other.getsockname()[1])

@@ -60,6 +60,19 @@ def test_the_next_turn_is_of_who_has_none() -> None:
     run(test)
 
 
+def test_one_more_begins_at_once_for_who_has_none() -> None:
+    async def test() -> None:
+        work = Work(Turns(2, 200, 200, 60, spare=1))
+        await work.start(*"aaa", *"bb", "c")
+        assert work.begun == ["a", "a", "b"], "the third is no other one of an account that has two"
+        await work.end_one()
+        assert work.begun[3:] == ["c"]
+        await work.end_one()
+        assert work.begun[4:] == ["a"], "which has none by now"
+
+    run(test)
+
+
 def test_turns_go_round() -> None:
     async def test() -> None:
         work = Work(Turns(1, 200, 200, 60))

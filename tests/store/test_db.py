@@ -10,7 +10,7 @@ import pytest
 from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import URL, inspect, text
+from sqlalchemy import URL, event, inspect, text
 
 from core.errors import BadInput, DiskFull
 from store.db import Database, alembic_config, make_engine, open_sqlite, sqlite_url, upgrade
@@ -87,6 +87,24 @@ def test_writers_of_one_file_wait_for_each_other(tmp_path: Path) -> None:
         assert session.execute(text("SELECT n FROM counter")).scalar_one() == 60
     for own in (*others, database):
         own.close()
+
+
+def test_writers_of_one_process_do_not_ask_sqlite_in_vain(tmp_path: Path) -> None:
+    db, begun = open_sqlite(tmp_path / "plan.db"), threading.Event()
+
+    def second() -> None:
+        with db.write() as session:
+            session.execute(text("SELECT 1"))
+
+    other = threading.Thread(target=second)
+    with db.write() as session:
+        session.execute(text("SELECT 1"))
+        event.listen(db.engine, "begin", lambda _connection: begun.set())
+        other.start()
+        assert not begun.wait(0.2), "it would sleep there between its tries, and come late again and again"
+    other.join(5)
+    assert begun.is_set()
+    db.close()
 
 
 def test_a_database_that_takes_no_more_is_a_full_disk(tmp_path: Path) -> None:

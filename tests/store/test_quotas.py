@@ -68,6 +68,21 @@ def test_an_account_may_have_a_limit_of_its_own(db: Database, tmp_path: Path, ac
     inspect(admission, "me", 0)
 
 
+def test_who_has_too_many_uploads_is_refused_without_a_turn_to_write(
+    db: Database, tmp_path: Path, accounts: Accounts
+) -> None:
+    accounts.change("me", max_open_uploads=1)
+    admission = admission_of(db, tmp_path)
+    admission.look_upload("me")
+    upload(admission, tmp_path, "me", 1)
+    with db.write() as session:  # nobody else can write meanwhile
+        db.lock(session, 1)
+        for refused in (partial(admission.look_upload, "me"), partial(admission.promise_form, "me", 1)):
+            with pytest.raises(LimitReached, match="max_open_uploads_per_owner is 1"):
+                refused()
+    admission.look_upload("you")
+
+
 def test_no_more_bytes_are_promised_to_an_account_than_may(db: Database, tmp_path: Path, accounts: Accounts) -> None:
     admission = admission_of(db, tmp_path, max_promised_bytes_per_owner=5 * MIB, max_promised_bytes=9 * MIB)
     accounts.change("you", max_promised_bytes=3 * MIB)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
-from sqlalchemy import update
+from sqlalchemy import select, update
 
 from core.errors import BadInput
 from core.settings import make_settings
@@ -14,11 +15,11 @@ from store.account_models import DEFAULT_ACCOUNT
 from store.db import Database
 from store.inspections import Inspections, delete_results_from, mark_deleted
 from store.listing import Filter, count_active, list_inspections
-from store.models import Inspection
+from store.models import Inspection, Task
 from store.monitoring import count_all
 from store.plan import Plan
 from store.status import InspectionStatus, StageCount, Statuses, plan_share
-from store.timings import learn_timings, plan_eta
+from store.timings import Expectation, StageTiming, expected_frames, learn_timings, plan_eta, stage_eta
 from tests.store.small_plan import FILES, GRAPH, result_for
 
 
@@ -135,18 +136,48 @@ def test_timings_are_learnt_from_inspections_that_came_to_an_end(db: Database) -
     work(db, "one", 3)
     assert learn_timings(db) == {}
     work(db, "one")
+    with db.write() as session:  # as if they had taken no longer than their stages
+        session.execute(update(Task).values(started_at=Task.ended_at))
     learnt = learn_timings(db)
     assert set(learnt) == set(GRAPH.stages)
     assert learnt["part"].per_task == (0.75, 3.0), "one sample says little"
     assert learnt["part"].per_plan == (2.25, 9.0)
     with db.write() as session:
         Inspections(db, GRAPH).create_in(session, "two", FILES, make_settings(options={"matching.window": 9}), "")
+        join = session.scalars(select(Task).where(Task.inspection_id == "one", Task.stage == "join")).one()
+        assert join.ended_at is not None
+        join.started_at = join.ended_at - timedelta(seconds=9)
+    assert learn_timings(db)["join"].per_task == (4.5, 18.0), "its process and its files take time too"
     fresh = status(db, "two").stages
-    assert plan_eta(fresh, GRAPH, learnt, workers=1) == (4.5, 18.0)
-    two_at_once = plan_eta(fresh, GRAPH, learnt, workers=2)
-    assert two_at_once is not None
-    assert two_at_once[0] < 4.5
-    assert plan_eta(fresh, GRAPH, {}, workers=1) is None
+    alone = Expectation(GRAPH, learnt, 1, (96, 96))
+    assert plan_eta(fresh, alone) == (round(4.5 * 0.7, 1), 18.0 * 1.4 + 5.0)
+    assert plan_eta(fresh, replace(alone, workers=2))[0] < 3.1
+
+
+def test_what_was_never_done_before_is_guessed_from_its_weight(db: Database) -> None:
+    create(db, "one")
+    stages = status(db, "one").stages
+    weights = sum(spec.weight for spec in GRAPH.stages.values())
+    usual = Expectation(GRAPH, {}, 2, (96, 96))
+    assert plan_eta(stages, usual) == pytest.approx((weights * 0.4 * 0.7, weights * 2.5 * 1.4 + 5.0), abs=0.1)
+    part = next(stage for stage in stages if stage.name == "part")
+    assert stage_eta(part, usual) == (0.4, 2.5)
+    assert stage_eta(part, replace(usual, workers=4)) == (0.2, 1.2), "it fans out"
+    growing = replace(GRAPH, stages={**GRAPH.stages, "part": replace(GRAPH.stages["part"], per_frame=True)})
+    assert stage_eta(part, replace(usual, graph=growing, frames=(24, 480))) == (0.1, 12.5)
+    learnt = {"split": StageTiming((1, 2), (1, 2))}
+    assert stage_eta(part, replace(usual, timings=learnt)) == (0.0, 2.5), "the others had none of it"
+
+
+def test_frames_are_bounded_by_the_settings_until_they_are_counted(db: Database) -> None:
+    create(db, "one")
+    with db.write() as session:
+        row = session.get_one(Inspection, "one")
+        row.settings = {**row.settings, "frames": {**row.settings["frames"], "max_count": 300}}
+    assert expected_frames(db, row) == (24, 300)
+    with db.write() as session:
+        session.execute(update(Task).values(key="frames", facts={"n_frames": 96}))
+    assert expected_frames(db, row) == (96, 96)
 
 
 def test_deleting_takes_the_stage_and_all_that_follow(db: Database) -> None:

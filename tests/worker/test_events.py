@@ -67,8 +67,8 @@ def test_the_time_left_follows_from_what_tasks_took() -> None:
     assert tracker.event(EventKind.OPENED).eta_s is None
     done = [PLAN[0], view("part/000", "succeeded", 30.0), PLAN[2]]
     tracker.refresh(done)
-    # One part of 30 s by two workers, and two stages of weight 1 at (2 + 30) s per 6 done units of weight.
-    assert tracker.event(EventKind.PROGRESS).eta_s == pytest.approx(15 + 2 * 32 / 6, abs=0.1)
+    # One part of 30 s by two workers, and two stages of weight 1 at (2 + 30 / 2) s per 6 done units of weight.
+    assert tracker.event(EventKind.PROGRESS).eta_s == pytest.approx(15 + 2 * 17 / 6, abs=0.1)
 
 
 def test_refreshing_tells_what_ended_since() -> None:

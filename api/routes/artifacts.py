@@ -66,18 +66,18 @@ def listing(request: Request, caller: Reader, inspection_id: str) -> Artifacts:
     """Size, SHA-256 and media type of every published file; empty until the inspection is over."""
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
-    return Artifacts(artifacts=[_item(inspection_id, view) for view in ArtifactRows(services.db).all(inspection_id)])
+    views = ArtifactRows(services.db).all(inspection_id)
+    return Artifacts(artifacts=[_item(services, inspection_id, view) for view in views])
 
 
-def _item(inspection_id: str, view: ArtifactView) -> ArtifactItem:
-    link = f"/v1/inspections/{inspection_id}/artifacts/{quote(view.path)}"
+def _item(services: Services, inspection_id: str, view: ArtifactView) -> ArtifactItem:
     return ArtifactItem(
         path=view.path,
         size=view.size,
         sha256=view.sha256,
         media_type=view.media_type,
         created_at=view.created_at,
-        link=link,
+        link=services.link(f"/v1/inspections/{inspection_id}/artifacts/{quote(view.path)}"),
     )
 
 

@@ -124,13 +124,16 @@ def listing(
 ) -> UploadList:
     """The account's uploads that were neither given up nor have expired, newest first. No header of tus is needed."""
     chosen = None if state is None else UploadState(state)
-    page = state_of(request).services.uploads.page(caller.owner, chosen, limit, cursor)
+    services = state_of(request).services
+    page = services.uploads.page(caller.owner, chosen, limit, cursor)
     if page.cursor is not None:
         response.headers["Link"] = next_link(request, page.cursor)
-    return UploadList(uploads=[_item(view) for view in page.uploads if not view.removed], next_cursor=page.cursor)
+    return UploadList(
+        uploads=[_item(services, view) for view in page.uploads if not view.removed], next_cursor=page.cursor
+    )
 
 
-def _item(upload: UploadView) -> UploadItem:
+def _item(services: Services, upload: UploadView) -> UploadItem:
     return UploadItem(
         id=upload.id,
         state=upload.state,
@@ -141,7 +144,7 @@ def _item(upload: UploadView) -> UploadItem:
         created_at=upload.created_at,
         updated_at=upload.updated_at,
         expires_at=upload.expires_at,
-        link=f"{router.prefix}/{upload.id}",
+        link=services.link(f"{router.prefix}/{upload.id}"),
     )
 
 
@@ -187,13 +190,14 @@ async def create(
         sha256 = _sha256(upload_checksum)
         known = await on_disk(partial(_sent_before, services, caller.owner, length, sha256, metadata, admit))
         if known is not None:
-            return _answer(HTTPStatus.OK, _place(known))
+            return _answer(HTTPStatus.OK, _place(services, known))
     upload = await run_in_threadpool(services.uploads.create, caller.owner, length, metadata, admit)
-    return _answer(HTTPStatus.CREATED, _place(upload))
+    return _answer(HTTPStatus.CREATED, _place(services, upload))
 
 
-def _place(upload: UploadView) -> dict[str, str]:
-    return {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": str(upload.offset), **_expiry(upload)}
+def _place(services: Services, upload: UploadView) -> dict[str, str]:
+    place = services.link(f"{router.prefix}/{upload.id}")
+    return {"Location": place, "Upload-Offset": str(upload.offset), **_expiry(upload)}
 
 
 def _sent_before(

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlsplit
 
-from pydantic import Field, SecretStr, field_validator
+from pydantic import Field, SecretStr, ValidationInfo, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
@@ -23,6 +23,7 @@ from core.video.limits import MAX_FRAME_PIXELS
 PREFIX = "BLADEATLAS_"
 _ORIGIN = re.compile(r"https?://[a-z0-9.-]+(:\d{1,5})?|https?://\[[0-9a-f:.]+\](:\d{1,5})?")
 _HOSTS = re.compile(r"(\*\.)?[A-Za-z0-9][A-Za-z0-9.-]*(:[0-9]{1,5})?")
+_BUCKET = re.compile(r"[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/(?!\.{1,2}(/|$))[^/?#\s]+)*/?")
 _PREFIX_PATH = re.compile(r"(/(?!\.{1,2}(/|$))[A-Za-z0-9._~-]+)*/?")
 _BROKERS = ("redis", "rediss", "redis+socket", "sentinel", "amqp", "amqps", "pyamqp")
 _HOST = re.compile(r"[\w.:,\[\]-]*")
@@ -253,6 +254,19 @@ class DeploymentSettings(BaseSettings):
     def _are_hosts(cls, value: str) -> str:
         if not all(_HOSTS.fullmatch(part.strip()) for part in value.split(",") if part.strip()):
             raise ValueError("must be host, host:port or *.domain, separated by commas")
+        return value
+
+    @field_validator("input_buckets")
+    @classmethod
+    def _are_buckets(cls, value: str, told: ValidationInfo) -> str:
+        store = str(told.data.get("artifacts_url", ""))
+        for part in filter(None, (part.strip() for part in value.split(","))):
+            if not _BUCKET.fullmatch(part):
+                raise ValueError("must be bucket or bucket/prefix, separated by commas")
+            place, own = f"{part.rstrip('/')}/", f"{store.removeprefix('s3://').rstrip('/')}/"
+            if store.startswith("s3://") and (place.startswith(own) or own.startswith(place)):
+                # Every account may read these buckets, and the store holds what belongs to each.
+                raise ValueError("must not hold the artifact store, or a part of it")
         return value
 
     @field_validator("root_path")

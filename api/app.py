@@ -74,6 +74,7 @@ def create_app(services: Services | None = None) -> FastAPI:
             "default": {"model": problems.Problem, "description": "Any error, as application/problem+json (RFC 9457)"}
         },
         dependencies=[Depends(known_query)],
+        generate_unique_id_function=openapi.name_of_call,
         # `api.routes.pages` serves these, without a foreign script.
         openapi_url=None,
         docs_url=None,

@@ -67,6 +67,7 @@ class Problem(BaseModel):
     """One error: what kind, in words, and where."""
 
     model_config = ConfigDict(
+        json_schema_serialization_defaults_required=True,
         json_schema_extra={
             "example": {
                 "type": "about:blank",
@@ -80,7 +81,7 @@ class Problem(BaseModel):
                 "retryable": False,
                 "errors": [],
             }
-        }
+        },
     )
 
     type: str = Field("about:blank", description="kind of problem; the `code` tells more")

@@ -37,7 +37,8 @@ _EXAMPLE: dict[str, Any] = {
     "created_at": "2026-05-04T09:41:10Z",
     "link": "/v1/inspections/0b6f1e0c3f7d4f0f9a52f7f4f1f0a6c1/artifacts/mapping/mesh_defects.ply",
 }
-_BINARY = {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}
+_BINARY_SCHEMA = {"type": "string", "format": "binary"}
+_BINARY = {"content": {"application/octet-stream": {"schema": _BINARY_SCHEMA}}}
 
 
 class ArtifactItem(BaseModel):
@@ -162,7 +163,10 @@ def _repr_digest(sha256: str) -> str:
     summary="Fetch files as one archive",
     response_class=StreamingResponse,
     responses={
-        200: {"description": "ZIP, not compressed, so that its length is known", "content": {"application/zip": {}}},
+        200: {
+            "description": "ZIP, not compressed, so that its length is known",
+            "content": {"application/zip": {"schema": _BINARY_SCHEMA}},
+        },
         **responses(401, 404, 409, 410, 422, 503),
     },
 )

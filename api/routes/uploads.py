@@ -20,6 +20,7 @@ from starlette.concurrency import run_in_threadpool
 
 from api.auth import Reader, Submitter
 from api.finding import is_id
+from api.openapi import MUST_BE_SENT
 from api.paging import next_link
 from api.parameters import OneOf
 from api.problems import Refused, not_found, responses
@@ -41,7 +42,8 @@ _SHA256_BYTES = 32
 def speaks_tus(
     request: Request,
     tus_resumable: Annotated[
-        str | None, Header(description="version of the protocol: 1.0.0", examples=[VERSION])
+        str | None,
+        Header(description="version of the protocol: 1.0.0", examples=[VERSION], json_schema_extra=MUST_BE_SENT),
     ] = None,
 ) -> None:
     """412 unless the client speaks our version; nothing of the request is processed then."""
@@ -166,7 +168,10 @@ def _item(services: Services, upload: UploadView) -> UploadItem:
 async def create(
     request: Request,
     caller: Submitter,
-    upload_length: Annotated[str | None, Header(description="size of the file in bytes", examples=["13107200"])] = None,
+    upload_length: Annotated[
+        str | None,
+        Header(description="size of the file in bytes", examples=["13107200"], json_schema_extra=MUST_BE_SENT),
+    ] = None,
     upload_metadata: Annotated[
         str | None, Header(description="`name base64,name base64`", examples=["filename dHVyYmluZS5tcDQ="])
     ] = None,
@@ -251,13 +256,21 @@ def offset(request: Request, caller: Submitter, upload_id: str) -> Response:
         204: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE},
         **responses(400, 401, 404, 409, 410, 412, 413, 415, 423, 507),
     },
-    openapi_extra={"requestBody": {"content": {_CONTENT_TYPE: {"schema": {"type": "string", "format": "binary"}}}}},
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {_CONTENT_TYPE: {"schema": {"type": "string", "format": "binary"}}},
+        }
+    },
 )
 async def send(
     request: Request,
     caller: Submitter,
     upload_id: str,
-    upload_offset: Annotated[str | None, Header(description="where these bytes begin", examples=["0"])] = None,
+    upload_offset: Annotated[
+        str | None,
+        Header(description="where these bytes begin", examples=["0"], json_schema_extra=MUST_BE_SENT),
+    ] = None,
 ) -> Response:
     """Append at the offset. What arrived of a request that was cut off is kept."""
     if request.headers.get("content-type", "").split(";")[0].strip().lower() != _CONTENT_TYPE:

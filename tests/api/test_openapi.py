@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 import schemathesis
+from fastapi import FastAPI
+from fastapi.responses import JSONResponse
 from fastapi.testclient import TestClient
 
 from api.app import create_app
@@ -97,3 +99,20 @@ def test_whatever_is_asked_the_answer_keeps_to_the_document(backend: Backend, un
     assert len(asked.calls) == len(calls) > 60
     # What is generated is neither all right nor all wrong.
     assert {200, 202, 204, 404, 412, 422} <= set(asked.statuses)
+
+
+def always(status: int) -> Callable[[], JSONResponse]:
+    def answer() -> JSONResponse:
+        return JSONResponse(None, status)
+
+    return answer
+
+
+def test_what_the_document_does_not_say_is_found() -> None:
+    app = FastAPI(responses={"default": {"description": "any error"}})
+    for name, status in {"good": 200, "undescribed": 418, "broken": 503}.items():
+        app.get(f"/{name}", responses={503: {"description": "away"}})(always(status))
+    asked = Asked({}, "")
+    ask_all(calls_of(schemathesis.openapi.from_asgi("/openapi.json", app, timeout=PATIENCE_S)), asked, 1, 0)
+    assert asked.statuses == {200: 1, 418: 1, 503: 1}
+    assert sorted(wrong.split(":")[0] for wrong in asked.wrong) == ["GET /broken", "GET /undescribed"]

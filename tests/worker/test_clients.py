@@ -110,6 +110,7 @@ def test_a_client_in_python(service: Service, folder: Path) -> None:
     assert fetched(folder)["sparse/points3D.bin"] == 64_000
 
 
+@pytest.mark.long  # packages from npm, and a compiler
 @pytest.mark.tool("npm")
 def test_a_client_in_typescript(service: Service, folder: Path) -> None:
     for name in ("package.json", "package-lock.json", "tsconfig.json"):

@@ -63,7 +63,7 @@ bench-real: setup ## run real clips beside COLMAP, from the checkouts in SOURCES
 bench-inputs: setup ## memory and time of a probe of an hour of 1080p, in out/inputs
 	$(BIN)/bladeatlas-bench inputs out/inputs
 
-bench-service: setup ## time uploads, downloads, many clients and the queue, and an honest client beside attackers for ten minutes
+bench-service: setup ## time uploads, downloads, many clients and the queue, attackers for ten minutes, generated requests for five
 	$(BIN)/bladeatlas-bench service $(SERVICE)
 
 soak: setup ## jobs through a whole deployment while its processes are killed (hours; SOAK="--toy": a minute)

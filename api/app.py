@@ -12,6 +12,7 @@ from api.auditing import Auditor
 from api.events import EventFeed
 from api.fetching import Fetches
 from api.middleware import RequestMetrics, RequestMiddleware, known_query
+from api.prefix import PrefixMiddleware
 from api.probing import Prober
 from api.resource import Resources
 from api.routes import (
@@ -46,10 +47,10 @@ from api.watching import Watcher
 from core.errors import BadInput
 from core.versions import program_version
 from store.audit import AuditLog
+from store.environment import deployment_settings
 from store.events import Events
 from store.keys import KeyRing, Keys
 from store.request_rate import RequestRate
-from store.settings import deployment_settings
 from store.uploads import Digests
 from store.web_sessions import WebSessions
 
@@ -73,6 +74,7 @@ def create_app(services: Services | None = None) -> FastAPI:
             "default": {"model": problems.Problem, "description": "Any error, as application/problem+json (RFC 9457)"}
         },
         dependencies=[Depends(known_query)],
+        generate_unique_id_function=openapi.name_of_call,
         # `api.routes.pages` serves these, without a foreign script.
         openapi_url=None,
         docs_url=None,
@@ -90,6 +92,8 @@ def create_app(services: Services | None = None) -> FastAPI:
     app.add_middleware(
         RequestMiddleware, metrics=RequestMetrics(state.registry), auditor=Auditor(AuditLog(state.services.db))
     )
+    if settings.root_path:
+        app.add_middleware(PrefixMiddleware, prefix=settings.root_path)
     for module in _ROUTERS:
         app.include_router(module.router)
     return app

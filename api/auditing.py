@@ -17,6 +17,7 @@ from typing import Any
 from sqlalchemy.exc import SQLAlchemyError
 
 from api.auth import Caller
+from api.prefix import own_path
 from api.threads import LimitedThreads
 from core.errors import BladeAtlasError
 from store.audit import AuditLog, Deed
@@ -44,7 +45,7 @@ class Auditor:
 
     def concerns(self, scope: MutableMapping[str, Any]) -> bool:
         """True for a request that would change something."""
-        return scope["method"] in _WRITES and scope["path"].startswith(_BELOW)
+        return scope["method"] in _WRITES and own_path(scope).startswith(_BELOW)
 
     async def note(self, scope: MutableMapping[str, Any], status: int) -> None:
         """Write down a request and its answer; where the database is away, into the server's log instead."""
@@ -78,7 +79,7 @@ def _deed(scope: MutableMapping[str, Any], status: int) -> Deed:
         account_id=who.owner if who else "",
         key_id=who.key_id if who else "",
         action=f"{scope['method']} {route}",
-        target=scope["path"],
+        target=own_path(scope),
         status=status,
         code=str(state.get("problem_code", "")),
         request_id=state["request_id"],

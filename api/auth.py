@@ -16,6 +16,7 @@ from fastapi import Depends, Query, Request
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 from starlette.concurrency import run_in_threadpool
 
+from api.prefix import own_path
 from api.problems import Refused
 from api.state import State, state_of
 from api.threads import WHOSE
@@ -31,7 +32,7 @@ COOKIE = "bladeatlas_session"
 WRITE_HEADER = "X-BladeAtlas-Write"
 """Any value of it will do: a page of another origin cannot send it without being allowed to."""
 READS = ("GET", "HEAD", "OPTIONS")
-_LINKED = re.compile(r"/v1/inspections/([0-9a-f]{32})/(.+)\Z", re.DOTALL)
+_LINKED = re.compile(r"/v1/inspections/([0-9a-f]{32})/(.+)", re.DOTALL)
 _CHALLENGE = {"WWW-Authenticate": "Bearer"}
 
 
@@ -107,7 +108,7 @@ async def reader_or_link(
         found = await caller(request, credentials)
         found.require(Scope.READ)
         return found
-    state, linked = state_of(request), _LINKED.search(request.scope["path"])
+    state, linked = state_of(request), _LINKED.fullmatch(own_path(request.scope))
     owner = None
     if linked is not None and signature is not None and expires is not None and signature.isascii():
         links, given = Links(state.services.db), Signature(expires, signature)

@@ -23,7 +23,8 @@ from api.threads import in_daemon_thread
 from core.errors import BadInput, BladeAtlasError
 from core.fingerprint import digest_of
 from store.admission import LimitReached
-from store.downloads import AllowedHosts, Downloads
+from store.bucket_inputs import SCHEME, AllowedBuckets, BucketInputs
+from store.downloads import AllowedHosts, Downloads, Source
 from store.outbound import Outbound
 from store.uploads import Digests, UploadFile, UploadView
 
@@ -67,12 +68,14 @@ class Fetches:
     wait_s: float = WAIT_S
     clock: Callable[[], float] = time.monotonic
     downloads: Downloads = field(init=False)
+    buckets: BucketInputs = field(init=False)
     _under_way: dict[str, _Fetch] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         settings = self.services.settings
         outbound = Outbound(settings.allowed_networks())
         self.downloads = Downloads(outbound, AllowedHosts.parse(settings.input_hosts))
+        self.buckets = BucketInputs(AllowedBuckets.parse(settings.input_buckets), settings.storage_options())
 
     async def uploads(self, owner: str, wanted: Sequence[Wanted]) -> list[str]:
         """Ids of uploads with these files, in their order; `done` follows once they are not needed any more.
@@ -84,7 +87,7 @@ class Fetches:
         """
         for one in wanted:
             try:
-                self.downloads.hosts.require(one.url)  # in vain nobody's place is taken
+                self._source(one.url).require(one.url)  # in vain nobody's place is taken
             except BadInput as error:
                 raise _refused(one, error) from None
         self._delete_old()
@@ -109,6 +112,9 @@ class Fetches:
         fetch = self._under_way.pop(_name(owner, wanted), None)
         if fetch is not None:
             await run_in_threadpool(partial(self._remove, fetch.task.result()))
+
+    def _source(self, url: str) -> Source:
+        return self.buckets if url.startswith(SCHEME) else self.downloads
 
     def _delete_old(self) -> None:
         """Drop files that were not used soon: at their URL there may be others by now."""
@@ -154,7 +160,7 @@ class Fetches:
             return sink
 
         try:
-            self.downloads.fetch(one.url, one.most_bytes, seconds, begin)
+            self._source(one.url).fetch(one.url, one.most_bytes, seconds, begin)
             sha256 = sink.finish() if sink is not None else None
         except BladeAtlasError as error:
             raise _refused(one, error) from None

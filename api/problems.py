@@ -69,6 +69,7 @@ class Problem(BaseModel):
     """One error: what kind, in words, and where."""
 
     model_config = ConfigDict(
+        json_schema_serialization_defaults_required=True,
         json_schema_extra={
             "example": {
                 "type": "about:blank",
@@ -82,7 +83,7 @@ class Problem(BaseModel):
                 "retryable": False,
                 "errors": [],
             }
-        }
+        },
     )
 
     type: str = Field("about:blank", description="kind of problem; the `code` tells more")

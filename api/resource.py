@@ -119,7 +119,7 @@ class Resources:
                 ],
                 "params_digest": digest_of(row.settings),
                 "versions": published.versions,
-                "links": _links(row.id),
+                "links": _links(self.services.link(f"/v1/inspections/{row.id}")),
             }
         )
 
@@ -206,7 +206,6 @@ def _queue(status: InspectionStatus, plan: Interval | None) -> Queue | None:
     return Queue(position=position, eta_s=eta)
 
 
-def _links(inspection_id: str) -> dict[str, str]:
-    own = f"/v1/inspections/{inspection_id}"
+def _links(own: str) -> dict[str, str]:
     page = {"viewer": f"{own}/{VIEWER_PAGE}", "report": f"{own}/report.pdf"}
     return {"self": own, **page, **{name.removesuffix(".zip"): f"{own}/{name}" for name in _LINKS}}

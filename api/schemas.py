@@ -95,6 +95,8 @@ class Warned(BaseModel):
 class JobProblem(BaseModel):
     """Why an inspection did not end well; a problem object (RFC 9457)."""
 
+    model_config = ConfigDict(json_schema_serialization_defaults_required=True)
+
     type: str = "about:blank"
     title: str
     detail: str = Field(description="one sentence")

@@ -72,7 +72,10 @@ CREATE_BODY: dict[str, Any] = {
 
 
 _SHA256 = Field(None, pattern="^[0-9a-f]{64}$", description="what it must hash to, in hexadecimal")
-_URL = "https URL that the server fetches it from; its host must be among `input_hosts`"
+_URL = (
+    "where the server fetches it: an https URL of a host among `input_hosts`, or `s3://bucket/key` of a bucket among "
+    "`input_buckets`"
+)
 
 
 class Recorded(BaseModel):

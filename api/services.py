@@ -57,6 +57,10 @@ class Services:
         shares = self.settings.share_results or owner == DEFAULT_ACCOUNT
         return "" if shares else owner
 
+    def link(self, path: str) -> str:
+        """A path of this server as clients ask for it: below the prefix, where there is one."""
+        return self.settings.root_path + path
+
     @property
     def logs(self) -> InspectionLogs:
         """Logs, which lie beside the artifacts."""

@@ -2,7 +2,8 @@
 
 Compression changes the representation, so it has a tag of its own: weak, because another version of zlib may write
 other bytes, and the original's with `-gzip` in it. Parts of a file (`Range`) are always parts of the original, under
-its own strong tag (RFC 9110, 8.8.3 and 14.2).
+its own strong tag (RFC 9110, 8.8.3 and 14.2). zstd is not offered: this Python's library has none, and every client
+that takes it takes gzip too.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from api.prefix import own_path
 from api.problems import Refused, answer
 from store.keys import KeyRing
 
@@ -74,7 +75,7 @@ class TrustMiddleware:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Look at the headers and pass the request on."""
-        if scope["type"] == "http" and scope["path"] != _FOR_ANYBODY:
+        if scope["type"] == "http" and own_path(scope) != _FOR_ANYBODY:
             request = Request(scope)
             try:
                 await self._require_trust(request)

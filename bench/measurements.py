@@ -24,7 +24,7 @@ from store.settings import available_cores
 
 COMPARISONS = ("stages", "disk", "matching", "windows", "dense", "mapping")
 """Of a finished run with other programs."""
-SERVICE = ("uploads", "downloads", "interrupted", "load", "hostile", "overhead", "scaling")
+SERVICE = ("uploads", "downloads", "interrupted", "load", "hostile", "overhead", "scaling", "generated")
 """Of a whole deployment."""
 
 
@@ -78,10 +78,19 @@ def _measured(names: Sequence[str], repeat: int, preset: str, seconds: float) ->
         "hostile": lambda folder: hostile(folder, seconds),
         "overhead": lambda folder: overhead(folder, repeat, preset),
         "scaling": lambda folder: scaling(folder, repeat, preset),
+        "generated": _generated,
     }
     for name in names:
         with tempfile.TemporaryDirectory(prefix="bladeatlas-bench-") as folder:
             yield known[name](Path(folder))
+
+
+def _generated(folder: Path) -> Table:
+    try:
+        from bench.service.generated import generated
+    except ImportError as error:  # it needs schemathesis, which only developers have
+        raise BadInput(f"{error.name} is not installed on this machine", where="generated") from None
+    return generated(folder)
 
 
 def _add_choice(parser: argparse.ArgumentParser, names: Sequence[str]) -> None:

@@ -15,10 +15,11 @@ from store.account_data import AccountData, plain
 from store.accounts import Accounts, AccountView
 from store.audit import AuditFilter, AuditLog, audited
 from store.db import Database
+from store.environment import deployment_settings
 from store.factory import open_artifacts, open_database
 from store.graph import load_graph
 from store.plan import Plan
-from store.settings import DeploymentSettings, deployment_settings
+from store.settings import DeploymentSettings
 
 _PAGE = 500
 

@@ -250,6 +250,9 @@ def _serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     serve.add_argument("--port", type=int, default=8000, help="port to bind to (8000)")
     serve.add_argument("--workers", type=int, metavar="N", help="tasks side by side (number of cores)")
     serve.add_argument(
+        "--root-path", metavar="/PATH", help="the path that a proxy before the server takes off (BLADEATLAS_ROOT_PATH)"
+    )
+    serve.add_argument(
         "--no-auth", action="store_true", help="let whoever reaches the server read and submit without a key"
     )
     worker = _add(commands, "worker", "run tasks of a distributed system until stopped", epilog=settings)

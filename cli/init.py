@@ -7,9 +7,9 @@ import argparse
 from cli.terminal import say
 from store import json_log
 from store.audit import audited
+from store.environment import deployment_settings
 from store.factory import open_artifacts, open_database
 from store.keys import Keys
-from store.settings import deployment_settings
 
 _NAME = "first key"
 

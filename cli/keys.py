@@ -13,9 +13,9 @@ from store.account_models import DEFAULT_ACCOUNT, USUAL_SCOPES
 from store.accounts import Accounts
 from store.audit import audited
 from store.db import Database
+from store.environment import deployment_settings
 from store.factory import open_database
 from store.keys import Keys, KeyView, parse_scopes, utc_now
-from store.settings import deployment_settings
 
 _MOST_DAYS = 36_500.0
 _MOST_HOURS = 8760.0

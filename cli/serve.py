@@ -21,11 +21,12 @@ from core.errors import BadInput, BladeAtlasError
 from store import json_log
 from store.announcing import Announcements
 from store.db import Database
+from store.environment import deployment_settings
 from store.factory import open_artifacts, open_database
 from store.graph import Graph, load_graph
 from store.housekeeping import Retention
 from store.keys import Keys
-from store.settings import DeploymentSettings, deployment_settings
+from store.settings import DeploymentSettings, prefix_path
 from worker.broker import TaskQueue
 from worker.cleaner import UploadCleaner
 from worker.loop import PollingRunners, WorkerService, say_confinement
@@ -43,6 +44,8 @@ def command(parsed: argparse.Namespace) -> int:
     settings = deployment_settings()
     if parsed.no_auth:
         settings = settings.model_copy(update={"no_auth": True})
+    if parsed.root_path is not None:
+        settings = settings.model_copy(update={"root_path": _prefix(parsed.root_path)})
     json_log.configure()
     say_confinement()
     with _alone(settings) as identity:
@@ -57,6 +60,13 @@ def command(parsed: argparse.Namespace) -> int:
         finally:
             database.close()
     return 0
+
+
+def _prefix(text: str) -> str:
+    try:
+        return prefix_path(text)
+    except ValueError as error:
+        raise BadInput(str(error), where="--root-path") from None
 
 
 def _application(

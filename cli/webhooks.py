@@ -14,9 +14,10 @@ from store.account_data import plain
 from store.audit import audited
 from store.db import Database
 from store.deliveries import Deliveries, DeliveryView
+from store.environment import deployment_settings
 from store.factory import open_database
 from store.outbound import Outbound
-from store.settings import DeploymentSettings, deployment_settings
+from store.settings import DeploymentSettings
 from store.webhooks import Webhooks, WebhookView
 
 _MOST_HOURS = 720.0

@@ -9,9 +9,10 @@ from core.errors import BadInput
 from core.states import Queue
 from store import json_log
 from store.db import Database
+from store.environment import deployment_settings
 from store.factory import open_database
 from store.monitoring import WorkerRegistry
-from store.settings import DeploymentSettings, deployment_settings
+from store.settings import DeploymentSettings
 from worker.broker import run_worker
 from worker.loop import say_confinement
 

@@ -27,7 +27,8 @@ from cli.arguments import parser
 from core.settings import PRESET_NAMES, Settings
 from core.settings.base import Group
 from core.settings.describe import OptionInfo, describe_options
-from store.settings import SECRETS, DeploymentSettings
+from store.environment import SECRETS
+from store.settings import DeploymentSettings
 
 ROOT = Path(__file__).parents[1]
 INCLUDE = re.compile(r"<!-- include README\.md: ([\w -]+) -->")

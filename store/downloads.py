@@ -19,7 +19,7 @@ from core.errors import BadInput
 from store.outbound import Outbound, Unreachable, parse_url
 
 _REDIRECTS = 5
-_TRIES = 5
+TRIES = 5
 """Requests in a row that bring no byte, and it is given up."""
 _PAUSE_S = 1.0
 _SILENCE_S = 30.0
@@ -50,6 +50,18 @@ class Sink(Protocol):
 
     def restart(self) -> None:
         """Delete all of them."""
+        ...
+
+
+class Source(Protocol):
+    """A kind of place that files are fetched from."""
+
+    def require(self, url: str) -> None:
+        """Pass a URL that may be fetched; BadInput otherwise, before anything is asked of anybody."""
+        ...
+
+    def fetch(self, url: str, most_bytes: int, seconds: float, begin: Callable[[int], Sink]) -> None:
+        """Fetch a file as a whole; `begin` gives what takes its bytes once its size is known and allowed."""
         ...
 
 
@@ -93,6 +105,10 @@ class Downloads:
     hosts: AllowedHosts
     sleep: Callable[[float], None] = time.sleep
 
+    def require(self, url: str) -> None:
+        """Pass a URL that may be fetched; see `AllowedHosts.require`."""
+        self.hosts.require(url)
+
     def fetch(self, url: str, most_bytes: int, seconds: float, begin: Callable[[int], Sink]) -> None:
         """Fetch a file as a whole.
 
@@ -131,10 +147,10 @@ class _Transfer:
                 self._request()
             except Unreachable as error:
                 if time.monotonic() >= self.until:
-                    raise _too_long() from None
+                    raise took_too_long() from None
                 gained = self.sink is not None and self.sink.offset > had
                 self._failures = 0 if gained else self._failures + 1
-                if self._failures >= _TRIES or error.code == "unknown_host":
+                if self._failures >= TRIES or error.code == "unknown_host":
                     raise
                 self.downloads.sleep(min(_PAUSE_S * 2**self._failures, max(0.0, self.until - time.monotonic())))
 
@@ -145,7 +161,7 @@ class _Transfer:
             self.downloads.hosts.require(url)
             left = self.until - time.monotonic()
             if left <= 0:
-                raise _too_long()
+                raise took_too_long()
             with self.downloads.outbound.call("GET", url, self._headers(), left, silence_s=_SILENCE_S) as answer:
                 headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in answer.headers}
                 if answer.status not in _MOVED:
@@ -168,15 +184,14 @@ class _Transfer:
         start, length = _extent(answer.status, headers)
         if self.sink is None:
             if length > self.most_bytes:
-                message = f"the file has {length} bytes; at most {self.most_bytes} are taken"
-                raise BadInput(message, code="too_large", where="url")
+                raise too_large(length, self.most_bytes)
             self.length, self.sink = length, self.begin(length)
         elif length != self.length:
-            raise _changed()
+            raise changed()
         self.validator = _validator(headers)
         if start != self.sink.offset:  # the whole file again: there are no ranges, or it is not the same any more
             if start:
-                raise _changed()
+                raise changed()
             self.sink.restart()
         self._read(answer, self.sink)
 
@@ -186,7 +201,7 @@ class _Transfer:
             for chunk in answer.iter_stream():
                 buffer += chunk
                 if sink.offset + len(buffer) > self.length:
-                    raise _changed()
+                    raise changed()
                 if len(buffer) >= _PIECE:
                     sink.write(bytes(buffer))
                     buffer.clear()
@@ -202,7 +217,7 @@ def _extent(status: int, headers: Mapping[str, str]) -> tuple[int, int]:
     if status == HTTPStatus.PARTIAL_CONTENT:
         form = _RANGE.fullmatch(headers.get("content-range", ""))
         if form is None:
-            raise _changed()
+            raise changed()
         return int(form[1]), int(form[2])
     length = headers.get("content-length", "")
     if not (length.isascii() and length.isdigit() and len(length) < 19):
@@ -216,9 +231,16 @@ def _validator(headers: Mapping[str, str]) -> str:
     return tag if tag.startswith('"') else ""
 
 
-def _changed() -> BadInput:
+def too_large(size: int, most: int) -> BadInput:
+    """It has more bytes than it may."""
+    return BadInput(f"the file has {size} bytes; at most {most} are taken", code="too_large", where="url")
+
+
+def changed() -> BadInput:
+    """What came first and what came later are not of one file."""
     return BadInput("the file changed while it was fetched", code="fetch_changed", where="url")
 
 
-def _too_long() -> BadInput:
+def took_too_long() -> BadInput:
+    """The time for all of it is over."""
     return BadInput("fetching the file took longer than fetch_seconds", code="fetch_timeout", where="url")

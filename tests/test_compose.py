@@ -13,7 +13,8 @@ import httpx
 import pytest
 
 from bench.soak.client import SoakClient
-from store.settings import PREFIX, SECRETS, DeploymentSettings
+from store.environment import SECRETS
+from store.settings import PREFIX, DeploymentSettings
 from tests.composition import OWN, ROOT, Composition, can_confine, composed, interpolated, merged, start_order
 from tests.store.object_store import s3_server
 

@@ -28,12 +28,13 @@ from core.states import RunState, TaskState, run_state
 from core.video.pictures import digest_of_video
 from core.videos import Recording
 from store.db import Database, open_sqlite
+from store.environment import deployment_settings
 from store.graph import CORE_GRAPH, Graph
 from store.inspections import Inspections, input_digest
 from store.models import ACTIVE_INSPECTION, OVER_TASK
 from store.plan import Plan
 from store.records import InputFiles, InspectionView, TaskView
-from store.settings import available_cores, deployment_settings
+from store.settings import available_cores
 from worker.events import EventKind, OnEvent, Outcome, Reporter, StageOutcome, Tracker
 from worker.limits import TaskLimits
 from worker.logs import TaskLogs

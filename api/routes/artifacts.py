@@ -37,7 +37,8 @@ _EXAMPLE: dict[str, Any] = {
     "created_at": "2026-05-04T09:41:10Z",
     "link": "/v1/inspections/0b6f1e0c3f7d4f0f9a52f7f4f1f0a6c1/artifacts/mapping/mesh_defects.ply",
 }
-_BINARY = {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}
+_BINARY_SCHEMA = {"type": "string", "format": "binary"}
+_BINARY = {"content": {"application/octet-stream": {"schema": _BINARY_SCHEMA}}}
 
 
 class ArtifactItem(BaseModel):
@@ -66,18 +67,18 @@ def listing(request: Request, caller: Reader, inspection_id: str) -> Artifacts:
     """Size, SHA-256 and media type of every published file; empty until the inspection is over."""
     services = state_of(request).services
     find_inspection(services, inspection_id, caller.owner)
-    return Artifacts(artifacts=[_item(inspection_id, view) for view in ArtifactRows(services.db).all(inspection_id)])
+    views = ArtifactRows(services.db).all(inspection_id)
+    return Artifacts(artifacts=[_item(services, inspection_id, view) for view in views])
 
 
-def _item(inspection_id: str, view: ArtifactView) -> ArtifactItem:
-    link = f"/v1/inspections/{inspection_id}/artifacts/{quote(view.path)}"
+def _item(services: Services, inspection_id: str, view: ArtifactView) -> ArtifactItem:
     return ArtifactItem(
         path=view.path,
         size=view.size,
         sha256=view.sha256,
         media_type=view.media_type,
         created_at=view.created_at,
-        link=link,
+        link=services.link(f"/v1/inspections/{inspection_id}/artifacts/{quote(view.path)}"),
     )
 
 
@@ -162,7 +163,10 @@ def _repr_digest(sha256: str) -> str:
     summary="Fetch files as one archive",
     response_class=StreamingResponse,
     responses={
-        200: {"description": "ZIP, not compressed, so that its length is known", "content": {"application/zip": {}}},
+        200: {
+            "description": "ZIP, not compressed, so that its length is known",
+            "content": {"application/zip": {"schema": _BINARY_SCHEMA}},
+        },
         **responses(401, 404, 409, 410, 422, 503),
     },
 )

@@ -29,7 +29,10 @@ router = APIRouter(prefix="/v1/accounts", tags=["accounts"])
     summary="Export all that an account has",
     response_class=StreamingResponse,
     responses={
-        200: {"description": "ZIP, not compressed, made while it is sent", "content": {"application/zip": {}}},
+        200: {
+            "description": "ZIP, not compressed, made while it is sent",
+            "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+        },
         **responses(401, 404, 503),
     },
 )

@@ -27,6 +27,8 @@ _PORTS = {"redis": 6379, "rediss": 6379, "amqp": 5672, "amqps": 5671}
 class Health(BaseModel):
     """The process answers."""
 
+    model_config = ConfigDict(json_schema_serialization_defaults_required=True)
+
     status: Literal["ok"] = Field("ok", description="always `ok` when there is an answer at all")
 
 
@@ -34,13 +36,14 @@ class Readiness(BaseModel):
     """What was checked, and that it works."""
 
     model_config = ConfigDict(
+        json_schema_serialization_defaults_required=True,
         json_schema_extra={
             "example": {
                 "status": "ready",
                 "checks": {"database": "ok", "artifacts": "ok", "disk": "ok"},
                 "children_network": "seccomp",
             }
-        }
+        },
     )
 
     status: Literal["ready"] = "ready"

@@ -94,7 +94,7 @@ async def represent(
 ) -> Response:
     """The resource as it is now, as the answer to a change."""
     snapshot = _own(await state.watcher.look(inspection_id), caller)
-    return _send(snapshot, status, {"Location": f"/v1/inspections/{inspection_id}"})
+    return _send(snapshot, status, {"Location": state.services.link(f"/v1/inspections/{inspection_id}")})
 
 
 def _own(snapshot: Snapshot | None, caller: Caller) -> Snapshot:

@@ -70,7 +70,7 @@ def create(request: Request, caller: Reader, inspection_id: str, body: NewLink) 
     lifetime = timedelta(seconds=body.seconds)
     signed = Links(services.db).sign(caller.owner, inspection_id, body.path, lifetime)
     query = f"expires={signed.expires}&signature={signed.signature}"
-    url = f"/v1/inspections/{inspection_id}/{quote(body.path)}?{query}"
+    url = services.link(f"/v1/inspections/{inspection_id}/{quote(body.path)}?{query}")
     return Link(url=url, expires_at=datetime.fromtimestamp(signed.expires, UTC))
 
 

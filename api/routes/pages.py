@@ -11,6 +11,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, JSONResponse
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from api.prefix import prefix_of
 from api.problems import not_found
 from core.metadata import KNOWN_METADATA
 from core.settings import PRESET_NAMES
@@ -74,7 +75,7 @@ def inspections(request: Request) -> Response:
 def document(request: Request) -> Response:
     """OpenAPI 3.1; behind a prefix it says so."""
     found: dict[str, Any] = request.app.openapi()
-    prefix = request.scope.get("root_path", "").rstrip("/")
+    prefix = prefix_of(request.scope)
     return JSONResponse({**found, "servers": [{"url": prefix}]} if prefix else found)
 
 

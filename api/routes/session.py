@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from api.auth import BEARER, COOKIE, AnyCaller
+from api.prefix import prefix_of
 from api.problems import Refused, responses
 from api.state import state_of
 from store.account_models import Scope
@@ -76,7 +77,7 @@ def end(request: Request, caller: AnyCaller) -> Response:
 
 def _path(request: Request) -> str:
     """Below which the cookie is sent: behind a prefix nobody else on this host gets it."""
-    return request.scope.get("root_path", "").rstrip("/") or "/"
+    return prefix_of(request.scope) or "/"
 
 
 def _scopes(caller: AnyCaller) -> list[Scope]:

@@ -20,6 +20,7 @@ from starlette.concurrency import run_in_threadpool
 
 from api.auth import Reader, Submitter
 from api.finding import is_id
+from api.openapi import MUST_BE_SENT
 from api.paging import next_link
 from api.parameters import OneOf
 from api.problems import Refused, not_found, responses
@@ -41,7 +42,8 @@ _SHA256_BYTES = 32
 async def speaks_tus(
     request: Request,
     tus_resumable: Annotated[
-        str | None, Header(description="version of the protocol: 1.0.0", examples=[VERSION])
+        str | None,
+        Header(description="version of the protocol: 1.0.0", examples=[VERSION], json_schema_extra=MUST_BE_SENT),
     ] = None,
 ) -> None:
     """412 unless the client speaks our version; nothing of the request is processed then."""
@@ -124,13 +126,16 @@ def listing(
 ) -> UploadList:
     """The account's uploads that were neither given up nor have expired, newest first. No header of tus is needed."""
     chosen = None if state is None else UploadState(state)
-    page = state_of(request).services.uploads.page(caller.owner, chosen, limit, cursor)
+    services = state_of(request).services
+    page = services.uploads.page(caller.owner, chosen, limit, cursor)
     if page.cursor is not None:
         response.headers["Link"] = next_link(request, page.cursor)
-    return UploadList(uploads=[_item(view) for view in page.uploads if not view.removed], next_cursor=page.cursor)
+    return UploadList(
+        uploads=[_item(services, view) for view in page.uploads if not view.removed], next_cursor=page.cursor
+    )
 
 
-def _item(upload: UploadView) -> UploadItem:
+def _item(services: Services, upload: UploadView) -> UploadItem:
     return UploadItem(
         id=upload.id,
         state=upload.state,
@@ -141,7 +146,7 @@ def _item(upload: UploadView) -> UploadItem:
         created_at=upload.created_at,
         updated_at=upload.updated_at,
         expires_at=upload.expires_at,
-        link=f"{router.prefix}/{upload.id}",
+        link=services.link(f"{router.prefix}/{upload.id}"),
     )
 
 
@@ -163,7 +168,10 @@ def _item(upload: UploadView) -> UploadItem:
 async def create(
     request: Request,
     caller: Submitter,
-    upload_length: Annotated[str | None, Header(description="size of the file in bytes", examples=["13107200"])] = None,
+    upload_length: Annotated[
+        str | None,
+        Header(description="size of the file in bytes", examples=["13107200"], json_schema_extra=MUST_BE_SENT),
+    ] = None,
     upload_metadata: Annotated[
         str | None, Header(description="`name base64,name base64`", examples=["filename dHVyYmluZS5tcDQ="])
     ] = None,
@@ -187,9 +195,9 @@ async def create(
         sha256 = _sha256(upload_checksum)
         known = await on_disk(partial(_sent_before, services, caller.owner, length, sha256, metadata, admit))
         if known is not None:
-            return _answer(HTTPStatus.OK, _place(known))
+            return _answer(HTTPStatus.OK, _place(services, known))
     upload = await on_disk(partial(_begin, services, caller.owner, length, metadata, admit))
-    return _answer(HTTPStatus.CREATED, _place(upload))
+    return _answer(HTTPStatus.CREATED, _place(services, upload))
 
 
 def _begin(
@@ -200,8 +208,9 @@ def _begin(
     return services.uploads.create(owner, length, metadata, admit)
 
 
-def _place(upload: UploadView) -> dict[str, str]:
-    return {"Location": f"/v1/uploads/{upload.id}", "Upload-Offset": str(upload.offset), **_expiry(upload)}
+def _place(services: Services, upload: UploadView) -> dict[str, str]:
+    place = services.link(f"{router.prefix}/{upload.id}")
+    return {"Location": place, "Upload-Offset": str(upload.offset), **_expiry(upload)}
 
 
 def _sent_before(
@@ -255,13 +264,21 @@ def offset(request: Request, caller: Submitter, upload_id: str) -> Response:
         204: {"description": "`Upload-Offset` bytes are safe", **_EXAMPLE},
         **responses(400, 401, 404, 409, 410, 412, 413, 415, 423, 507),
     },
-    openapi_extra={"requestBody": {"content": {_CONTENT_TYPE: {"schema": {"type": "string", "format": "binary"}}}}},
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {_CONTENT_TYPE: {"schema": {"type": "string", "format": "binary"}}},
+        }
+    },
 )
 async def send(
     request: Request,
     caller: Submitter,
     upload_id: str,
-    upload_offset: Annotated[str | None, Header(description="where these bytes begin", examples=["0"])] = None,
+    upload_offset: Annotated[
+        str | None,
+        Header(description="where these bytes begin", examples=["0"], json_schema_extra=MUST_BE_SENT),
+    ] = None,
 ) -> Response:
     """Append at the offset. What arrived of a request that was cut off is kept."""
     if request.headers.get("content-type", "").split(";")[0].strip().lower() != _CONTENT_TYPE:

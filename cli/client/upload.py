@@ -63,7 +63,7 @@ def _created(http: httpx.Client, server: str, path: Path, size: int, transfers: 
     headers = {**_TUS, "Upload-Length": str(size), "Upload-Metadata": f"filename {name}"}
     response = http.post("/v1/uploads", headers=headers)
     raise_problem(response)
-    url = str(response.headers["Location"])
+    url = str(response.url.join(response.headers["Location"]))  # whatever prefix the server is behind
     transfers.keep(server, path, url)
     return url
 

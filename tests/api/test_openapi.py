@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 import schemathesis
 from fastapi import FastAPI
+from fastapi.responses import JSONResponse
 from fastapi.testclient import TestClient
-from hypothesis import HealthCheck, given, settings
-from schemathesis.checks import not_a_server_error
-from schemathesis.core.result import Ok
-from schemathesis.specs.openapi.checks import (
-    content_type_conformance,
-    response_schema_conformance,
-    status_code_conformance,
-)
 
 from api.app import create_app
 from api.problems import MEDIA_TYPE
+from bench.service.generated import PATIENCE_S, Asked, ask_all, calls_of
 from store.account_models import Scope
 from store.keys import Keys
 from tests.api.conftest import Backend
 from tests.api.test_results import ROWS
 
-_CHECKS = (not_a_server_error, content_type_conformance, response_schema_conformance, status_code_conformance)
-schemathesis.serializer.alias("application/offset+octet-stream", "application/octet-stream")
 _METHODS = ("get", "post", "patch", "delete", "head", "options")
 
 
@@ -91,42 +82,37 @@ def test_references_resolve(document: dict[str, Any]) -> None:
         assert reference.removeprefix("#/components/schemas/") in document["components"]["schemas"]
 
 
-@dataclass
-class Asked:
-    """An application, an inspection in it, and a key that may see it."""
-
-    app: FastAPI
-    inspection_id: str
-    headers: dict[str, str]
+REQUESTS = 14
+"""To each call; all of them take half a minute."""
 
 
-@pytest.fixture
-def asked(backend: Backend, unprobed: None) -> Asked:
+def test_whatever_is_asked_the_answer_keeps_to_the_document(backend: Backend, unprobed: None) -> None:
+    """Generated requests to every route, always the same; half of them about an inspection that there is."""
     key = Keys(backend.db).create("generated requests", scopes=tuple(Scope))[1]
     files = {"quality.json": b'{"verdict": "ok", "flags": []}', "mapping/timeline.csv": b"event_id\r\n"}
     one = backend.finished("one", files, **ROWS)
-    return Asked(create_app(backend.services), one, {"Authorization": f"Bearer {key}"})
+    asked = Asked({"Authorization": f"Bearer {key}"}, one)
+    schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(backend.services), timeout=PATIENCE_S)
+    calls = calls_of(schema)
+    ask_all(calls, asked, REQUESTS, 0)
+    assert asked.wrong == []
+    assert len(asked.calls) == len(calls) > 60
+    # What is generated is neither all right nor all wrong.
+    assert {200, 202, 204, 404, 412, 422} <= set(asked.statuses)
 
 
-def test_whatever_is_asked_the_answer_keeps_to_the_document(asked: Asked) -> None:
-    """Generated requests to every route; half of them about an inspection that there is."""
-    schema = schemathesis.openapi.from_asgi("/openapi.json", asked.app)
-    found = list(schema.get_all_operations())
-    operations = [one.ok() for one in found if isinstance(one, Ok)]
-    assert len(operations) == len(found), "the document has no mistake"
-    assert len(operations) > 30
-    statuses: set[int] = set()
-    for operation in operations:
-        _ask(operation, asked, statuses)
-    assert {200, 202, 204, 404, 412, 422} <= statuses, "what is generated is neither all right nor all wrong"
+def always(status: int) -> Callable[[], JSONResponse]:
+    def answer() -> JSONResponse:
+        return JSONResponse(None, status)
+
+    return answer
 
 
-def _ask(operation: Any, asked: Asked, statuses: set[int]) -> None:
-    @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True, database=None)
-    @given(case=operation.as_strategy())
-    def ask(case: schemathesis.Case[Any]) -> None:
-        if len(str(case.path_parameters.get("inspection_id", "x"))) % 2 == 0:
-            case.path_parameters["inspection_id"] = asked.inspection_id
-        statuses.add(case.call_and_validate(checks=list(_CHECKS), headers=asked.headers).status_code)
-
-    ask()
+def test_what_the_document_does_not_say_is_found() -> None:
+    app = FastAPI(responses={"default": {"description": "any error"}})
+    for name, status in {"good": 200, "undescribed": 418, "broken": 503}.items():
+        app.get(f"/{name}", responses={503: {"description": "away"}})(always(status))
+    asked = Asked({}, "")
+    ask_all(calls_of(schemathesis.openapi.from_asgi("/openapi.json", app, timeout=PATIENCE_S)), asked, 1, 0)
+    assert asked.statuses == {200: 1, 418: 1, 503: 1}
+    assert sorted(wrong.split(":")[0] for wrong in asked.wrong) == ["GET /broken", "GET /undescribed"]

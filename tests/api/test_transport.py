@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 
 from api.app import create_app
 from core.errors import BadInput
-from store.settings import deployment_settings
+from store.environment import deployment_settings
 from tests.api.callers import ROUTES, Place
 from tests.api.conftest import Backend, client_of
 from tests.api.test_results import ROWS

@@ -14,7 +14,8 @@ from sqlalchemy import URL
 from cli import exits
 from cli.main import main
 from core.errors import BadInput
-from store.settings import PREFIX, SECRETS, deployment_settings
+from store.environment import SECRETS, deployment_settings
+from store.settings import PREFIX
 from tests.test_house import ROOT, texts
 
 WRONG = f"{PREFIX}MAXACTIVE"
@@ -173,3 +174,26 @@ def test_a_server_that_calls_the_factory_ends(monkeypatch: pytest.MonkeyPatch, t
     assert done.returncode == 2
     assert "MAX_ACTIVE" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "path"), [("", ""), ("/", ""), ("/blades", "/blades"), ("/a/b-1/", "/a/b-1"), ("/a/.b", "/a/.b")]
+)
+def test_a_path_of_a_proxy(monkeypatch: pytest.MonkeyPatch, given: str, path: str) -> None:
+    monkeypatch.setenv(f"{PREFIX}ROOT_PATH", given)
+    assert deployment_settings().root_path == path
+
+
+NO_PATHS = ["blades", "https://host/blades", "/a//b", "/a/../b", "/a/.", "/a b", "/ä", "/a?b"]
+
+
+@pytest.mark.parametrize("given", NO_PATHS)
+def test_what_is_no_path_of_a_proxy(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], given: str
+) -> None:
+    monkeypatch.setenv(f"{PREFIX}ROOT_PATH", given)
+    with pytest.raises(BadInput, match="ROOT_PATH: must be a path such as /blades"):
+        deployment_settings()
+    monkeypatch.delenv(f"{PREFIX}ROOT_PATH")
+    assert main(["serve", "--root-path", given]) == exits.BAD_INPUT
+    assert "must be a path such as /blades" in capsys.readouterr().err

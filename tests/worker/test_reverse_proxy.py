@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import re
 import resource
+import shutil
 import socket
 import ssl
-import subprocess
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import httpx
@@ -21,17 +19,17 @@ from store.db import open_sqlite
 from store.keys import Keys
 from tests.waiting import wait_for
 from tests.worker.deployment import ROOT, Deployment
+from tests.worker.nginx import NAME, PREFIX, Proxy, proxied
 from tests.worker.test_serve import _answers, free_port
 
 pytestmark = pytest.mark.deployment
-_NAME = "inspections.example.com"
 _TUS = {"Tus-Resumable": "1.0.0"}
 
 
 @pytest.fixture
 def place(tmp_path: Path) -> Iterator[Deployment]:
     database = open_sqlite(tmp_path / "bladeatlas.db")
-    made = Deployment(tmp_path, database, {"BLADEATLAS_TRUSTED_HOSTS": _NAME, "BLADEATLAS_HEADER_SECONDS": "600"})
+    made = Deployment(tmp_path, database, {"BLADEATLAS_TRUSTED_HOSTS": NAME, "BLADEATLAS_HEADER_SECONDS": "600"})
     yield made
     made.stop()
     database.close()
@@ -83,78 +81,35 @@ def test_1100_half_open_connections_stop_nobody(place: Deployment, many_descript
     assert len(said) < 20_000
 
 
-def certificate(folder: Path) -> tuple[Path, Path]:
-    key, pem = folder / "key.pem", folder / "cert.pem"
-    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", f"/CN={_NAME}"]
-    command += ["-addext", f"subjectAltName=DNS:{_NAME}", "-keyout", str(key), "-out", str(pem)]
-    subprocess.run(command, check=True, capture_output=True)
-    return pem, key
-
-
-def configuration(folder: Path, port: int, server_port: int) -> Path:
-    """The block of the page, with this machine's names and paths."""
-    page = (ROOT / "docs" / "operations" / "reverse-proxy.md").read_text(encoding="utf-8")
-    found = re.search(r"<!-- nginx.conf -->\n```nginx\n(.*?)\n```\n<!-- end -->", page, re.DOTALL)
-    assert found
-    pem, key = certificate(folder)
-    text = found[1]
-    for old, new in (
-        ("/etc/ssl/inspections.pem", str(pem)),
-        ("/etc/ssl/inspections.key", str(key)),
-        ("listen 443 ssl", f"listen 127.0.0.1:{port} ssl"),
-        ("127.0.0.1:8000", f"127.0.0.1:{server_port}"),
-    ):
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    path = folder / "nginx.conf"
-    folders = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
-    temporary = "".join(f"    {name}_temp_path {folder}/{name};\n" for name in folders)
-    own = f"daemon off;\npid {folder}/nginx.pid;\n"
-    user = "user root;\n" if os.getuid() == 0 else ""  # the test's folder is this user's alone
-    path.write_text(own + user + text.replace("http {\n", "http {\n" + temporary, 1), encoding="utf-8")
-    return path
+@contextmanager
+def client_of(proxy: Proxy, key: str) -> Iterator[httpx.Client]:
+    headers = {"Host": NAME, "Authorization": f"Bearer {key}"}
+    trust = ssl.create_default_context(cafile=str(proxy.authority))
+    with httpx.Client(base_url=proxy.url, headers=headers, verify=trust, timeout=30) as client:
+        yield client
 
 
 @pytest.fixture
-def proxied(place: Deployment, tmp_path: Path) -> Iterator[httpx.Client]:
-    port, server_port = free_port(), free_port()
+def through(place: Deployment, tmp_path: Path) -> Iterator[httpx.Client]:
+    port = free_port()
     key = Keys(place.db).create("through the proxy")[1]
-    start(place, server_port)
-    folder = tmp_path / "nginx"
-    folder.mkdir()
-    path = configuration(folder, port, server_port)
-    with (folder / "said").open("wb") as said:
-        nginx = subprocess.Popen(["nginx", "-p", str(folder), "-c", str(path)], stdout=said, stderr=said)
-    headers = {"Host": _NAME, "Authorization": f"Bearer {key}"}
-    try:
-        trust = ssl.create_default_context(cafile=str(folder / "cert.pem"))
-        trust.check_hostname = False  # it is asked by its address
-        with httpx.Client(base_url=f"https://127.0.0.1:{port}", headers=headers, verify=trust, timeout=30) as client:
-            wait_for(lambda: nginx.poll() is not None or _accepts(port))
-            assert nginx.poll() is None, (folder / "said").read_text()
-            yield client
-    finally:
-        nginx.terminate()
-        nginx.wait(10)
-
-
-def _accepts(port: int) -> bool:
-    with socket.socket() as one:
-        return one.connect_ex(("127.0.0.1", port)) == 0
+    start(place, port)
+    with proxied(tmp_path / "nginx", port) as proxy, client_of(proxy, key) as client:
+        yield client
 
 
 @pytest.mark.tool("nginx")
-def test_the_proxy_of_the_handbook_passes_everything_on(place: Deployment, proxied: httpx.Client) -> None:
-    assert proxied.get("/v1/limits").status_code == 200
-    assert proxied.get("/v1/limits", headers={"Authorization": ""}).status_code == 401, (
+def test_the_proxy_of_the_handbook_passes_everything_on(place: Deployment, through: httpx.Client) -> None:
+    assert through.get("/v1/limits").status_code == 200
+    assert through.get("/v1/limits", headers={"Authorization": ""}).status_code == 401, (
         "it is no caller of this machine"
     )
-    assert proxied.get("/v1/limits", headers={"Host": "elsewhere.example.com"}).status_code == 421
-    session = proxied.post("/v1/session")
+    assert through.get("/v1/limits", headers={"Host": "elsewhere.example.com"}).status_code == 421
+    session = through.post("/v1/session")
     assert "Secure" in session.headers["Set-Cookie"], "the server knows that TLS is before it"
 
     # Larger than any buffer, and its first part is on disk while the rest is still to come.
-    made = proxied.post("/v1/uploads", headers={**_TUS, "Upload-Length": str(8 << 20)})
+    made = through.post("/v1/uploads", headers={**_TUS, "Upload-Length": str(8 << 20)})
     url = made.headers["Location"]
     seen: list[int] = []
 
@@ -165,11 +120,56 @@ def test_the_proxy_of_the_handbook_passes_everything_on(place: Deployment, proxi
         yield bytes(2 << 20)
 
     headers = {**_TUS, "Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
-    assert proxied.patch(url, content=parts(), headers=headers).headers["Upload-Offset"] == str(8 << 20)
+    assert through.patch(url, content=parts(), headers=headers).headers["Upload-Offset"] == str(8 << 20)
     assert seen[0] > 0
 
     place.create("one")
     place.wait("one")
-    with proxied.stream("GET", "/v1/events", params={"after": 0}, headers={"Accept": "text/event-stream"}) as events:
+    with through.stream("GET", "/v1/events", params={"after": 0}, headers={"Accept": "text/event-stream"}) as events:
         first = next(line for line in events.iter_lines() if line.startswith("event:"))
     assert first == "event: inspection.queued"
+
+
+@pytest.mark.browser
+@pytest.mark.tool("nginx")
+@pytest.mark.tool("chromium-headless-shell")
+def test_below_a_prefix_a_browser_signs_in_sends_and_reads(place: Deployment, tmp_path: Path) -> None:
+    """By the name of the page; what leads past the prefix is a 404 of the proxy, which the test would see."""
+    sync_api = pytest.importorskip("playwright.sync_api")
+    port = free_port()
+    key = Keys(place.db).create("through the proxy")[1]
+    process = place.start("serve", "--port", str(port), "--workers", "1", "--root-path", PREFIX)
+    wait_for(lambda: process.poll() is not None or _answers(f"http://127.0.0.1:{port}"))
+    video = tmp_path / "one.mp4"
+    video.write_bytes((ROOT / "samples/turbine.mp4").read_bytes())
+    with proxied(tmp_path / "nginx", port, below_prefix=True) as proxy, sync_api.sync_playwright() as playwright:
+        with client_of(proxy, key) as client:
+            bare = client.get(proxy.url)
+            assert bare.status_code == 301
+            assert bare.headers["Location"].endswith(f"{PREFIX}/"), "relative addresses need it"
+        browser = playwright.chromium.launch(
+            executable_path=shutil.which("chromium-headless-shell"),
+            args=["--no-sandbox", f"--host-resolver-rules=MAP {NAME} 127.0.0.1:{proxy.port}"],
+        )
+        try:
+            tab = browser.new_context(ignore_https_errors=True).new_page()
+            failed: list[str] = []
+            asked: list[str] = []
+            tab.on("response", lambda answer: failed.append(answer.url) if answer.status in (404, 500) else None)
+            tab.on("request", lambda request: asked.append(request.url))
+            tab.goto(f"https://{NAME}{PREFIX}/", timeout=60_000)
+            tab.fill("#key", key)
+            tab.click("#sign-in button")
+            tab.set_input_files("#files", str(video))
+            tab.click("#send:enabled")
+            tab.wait_for_selector("#list li")
+            tab.goto(f"https://{NAME}{PREFIX}/docs")
+            tab.wait_for_selector(".opblock")
+            cookies = tab.context.cookies()
+        finally:
+            browser.close()
+    assert [cookie["path"] for cookie in cookies] == [PREFIX]
+    assert failed == []
+    own = [url for url in asked if url.startswith("https:")]
+    assert all(url.startswith(f"https://{NAME}{PREFIX}") for url in own), own
+    assert any("/v1/uploads/" in url for url in own)

@@ -135,8 +135,8 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec("fuse", "fusion", weight=3),
         _spec("mesh", "mesh", weight=2),
-        _spec("row", "seed", version=2, weight=3),
-        _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", version=3, weight=1),
+        _spec("row", "seed", version=3, weight=3),
+        _spec("blades", *_options("row", "count", "zero_blade", "direction", "edge_a"), "seed", version=4, weight=1),
         _spec("map_defects", "mapping", version=11, weight=0.6),
         _spec(
             "timeline",

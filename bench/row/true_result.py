@@ -16,6 +16,7 @@ import pycolmap
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from bench.accuracy.true_coverage import GRAZING_COSINE
 from bench.accuracy.truth import Lens
 from bench.row.cases import Case
 from bench.scenes.blades import Row, build_row
@@ -59,7 +60,9 @@ def make_true_result(case: Case, truth_folder: Path, folder: Path) -> None:
     kept, times = frame_times(scene)
     poses = path.rotor_from_cam()[kept]
     painter, seen, lens = Painter(scene, row, path), Seen(scene, row), true_lens(scene.lens)
-    middles = row.vertices[row.faces].mean(axis=1)
+    corners = row.vertices[row.faces]
+    middles, normals = corners.mean(axis=1), np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     taken = range(0, len(kept), EVERY)
     counts = np.zeros((2, len(middles)), np.int64)
     findings = []
@@ -68,7 +71,7 @@ def make_true_result(case: Case, truth_folder: Path, folder: Path) -> None:
         visible = seen.add(labels, point)
         if k in taken:
             half = int(k >= len(kept) // 2)
-            counts[half] += _shown(middles, point, poses[k], lens)
+            counts[half] += _shown(middles, normals, point, poses[k], lens)
             findings += [_Finding(k, one, _place(one, labels, point)) for one in visible]
     for place in (truth_folder, folder):
         shutil.rmtree(place, ignore_errors=True)
@@ -89,10 +92,12 @@ def make_true_result(case: Case, truth_folder: Path, folder: Path) -> None:
     _write(folder, mesh, poses, list(taken), times, lens, findings)
 
 
-def _shown(middles: F64, point: F64, pose: F64, lens: Lens) -> Flags:
-    """(m,) whether a frame shows the middles of faces: what hides them is nearer on the same pixel."""
+def _shown(middles: F64, normals: F64, point: F64, pose: F64, lens: Lens) -> Flags:
+    """(m,) whether a frame shows the middles of faces, at most 80 degrees aslant: what hides them is nearer."""
     xy = lens.project((middles - pose[:3, 3]) @ pose[:3, :3])
-    inside = np.flatnonzero(((xy >= 0) & (xy < (lens.width, lens.height))).all(axis=1))
+    way = pose[:3, 3] - middles
+    aslant = np.abs((way * normals).sum(axis=1)) <= GRAZING_COSINE * np.linalg.norm(way, axis=1)
+    inside = np.flatnonzero(((xy >= 0) & (xy < (lens.width, lens.height))).all(axis=1) & ~aslant)
     column, line = xy[inside].astype(np.int64).T
     shown = np.zeros(len(middles), bool)
     # A pixel that shows nothing holds no number, and is near to nothing.

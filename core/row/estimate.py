@@ -86,14 +86,16 @@ def describe_row(
         told: what the user knows; with the number of blades the pitch is exact, and the axis is fitted to it.
     """
     drawn = sample_surface(mesh, seed)
-    coarse, fine = thinned(drawn, SEARCH_POINTS), thinned(drawn, FIT_POINTS)
+    fine = thinned(drawn, FIT_POINTS)
+    # Coverage is a share of the area: a thinned sample has too many points where the surface bends, as at the edges.
+    even = drawn.of(np.arange(0, len(drawn), max(1, len(drawn) // SEARCH_POINTS)))
     if told.count is not None:
         found = refined(fine, Hypothesis(found.axis, 2 * np.pi / told.count), pitch_known=True)
         found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
     refusal = refused(fine, found)
     if refusal is not None:
         return refusal
-    return _described(fine, coarse, found, views, Surface(mesh.vertices, mesh.faces), told)
+    return _described(fine, even, found, views, Surface(mesh.vertices, mesh.faces), told)
 
 
 def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, translations: F64) -> Hypothesis | None:
@@ -158,11 +160,11 @@ def _deviations(sheet: Sheet, sample: SurfaceSample, blades: NDArray[np.int64]) 
 
 
 def _described(
-    fine: SurfaceSample, coarse: SurfaceSample, row: Hypothesis, views: Views, surface: Surface, told: RowSettings
+    fine: SurfaceSample, even: SurfaceSample, row: Hypothesis, views: Views, surface: Surface, told: RowSettings
 ) -> BladeRow:
     sheet = fit_sheet(fine, row)
     blades = seen_blades(sheet, fine)
-    on_blade = sides(coarse, row.axis)
+    on_blade = sides(even, row.axis)
     seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
     count = told.count
     first = in_order(seen, index, blades)

@@ -13,9 +13,16 @@ F64 = NDArray[np.float64]
 
 EVALUATIONS = 120
 """Of the contrast, per seed."""
-TURNS = (1, 2, 3)
-"""Pitches after which the surface is fitted to itself, all at once: radius and pitch trade in one alone."""
-GAUSS_NEWTON_STEPS = 60
+NEAR_TURNS, FAR_TURNS = (1, 2, 3), (1, 2, 3, 4, 5)
+"""Pitches after which the surface is fitted to itself, all at once: radius and pitch trade in one alone.
+
+First over few, which a pitch that is somewhat off does not lead astray; then over more, every distance counting alike.
+On the true surface of the sample with 0.5 mm of smooth noise the pitch is 0.26 % off so, and 1.0 % with few alone that
+count less the farther they are (root mean square of four draws)."""
+KEPT_CONTRAST = 0.9
+"""Of the contrast of few pitches: where more of them cost more, far blades lie wrong, as in a model that is bent."""
+STEPS = {NEAR_TURNS: (30, 1e-3), FAR_TURNS: (40, 1e-5)}
+"""Gauss-Newton steps at most, and the largest step that ends them before."""
 NUDGE = 1e-5
 FIRST_STEPS = (0.05, 0.05, 0.05, 0.05, 0.04)
 """Edges of the first simplex: rad, rad, shares of the radius, share of the pitch."""
@@ -45,17 +52,27 @@ def refined(sample: SurfaceSample, row: Hypothesis, pitch_known: bool = False) -
         pitch_known: hold the pitch and fit the axis alone.
     """
     free = slice(0, 4 if pitch_known else 5)
+    near = _fitted(sample, row, NEAR_TURNS, free)
+    far = _fitted(sample, near, FAR_TURNS, free)
+    return far if contrast(sample, far) >= KEPT_CONTRAST * contrast(sample, near) else near
+
+
+def _fitted(sample: SurfaceSample, row: Hypothesis, turns: tuple[int, ...], free: slice) -> Hypothesis:
+    """Fitted over turns by so many pitches; `free` are the numbers of the row that may change."""
     width = row.kernel(sample)
-    for _ in range(GAUSS_NEWTON_STEPS):
+    most, least_step = STEPS[turns]
+    for _ in range(most):
         length = _radius(sample, row)
         normal_matrix, right, count = np.zeros((5, 5)), np.zeros(5), 0
-        for turn in TURNS:
+        for turn in turns:
             angle = turn * row.pitch_rad
             moved = row.axis.turned(sample.points, angle)
             found = partners(moved, sample.normals @ row.axis.matrix(angle).T, sample)
             use = np.flatnonzero(found.fits & (np.abs(found.across) < 4.0 * width))
             jacobian = _jacobian(sample, row, turn, use, found.rows[use], moved[use], length)
-            weight = 1.0 / (1.0 + (found.across[use] / width) ** 2) / (turn * turn)
+            weight = 1.0 / (1.0 + (found.across[use] / width) ** 2)
+            if turns == NEAR_TURNS:
+                weight /= turn * turn  # blades far off count once the near ones fit
             normal_matrix += (jacobian * weight[:, None]).T @ jacobian
             right += (jacobian * weight[:, None]).T @ found.across[use]
             count += len(use)
@@ -66,7 +83,7 @@ def refined(sample: SurfaceSample, row: Hypothesis, pitch_known: bool = False) -
         steps = np.zeros(5)
         steps[free] = np.clip(-np.linalg.solve(damped[free, free], right[free]), -0.05, 0.05)
         row = _moved(row, steps, length)
-        if np.abs(steps).max() < 1e-5:
+        if np.abs(steps).max() < least_step:
             break
     return row
 

@@ -46,8 +46,7 @@ def three() -> BladeRow:
 
 @pytest.fixture
 def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows are sought on fewer points of a surface: quicker."""
-    monkeypatch.setattr(estimate, "SEARCH_POINTS", 800)
+    """Rows are fitted to fewer points of a surface: quicker."""
     monkeypatch.setattr(estimate, "FIT_POINTS", 3000)
 
 

@@ -24,6 +24,7 @@ from bench.scenes.detector import Visible
 from bench.scenes.make import Seen, frame_times, write_truth
 from bench.scenes.path import make_path
 from bench.scenes.render import Painter, true_lens
+from core.geometry.pose import transform
 from core.outputs import DEFECT_SURFACE, DEFECTS, DETECTIONS, FRAMES, SPARSE, SUMMARY, SURFACE
 from core.report.tables import write_csv
 from core.scene.defect import MODEL_UNIT, DefectRecord, Extent, Persistence
@@ -81,7 +82,7 @@ def make_true_result(case: Case, truth_folder: Path, folder: Path) -> None:
     if case.weld is not None:
         rotation, shift = case.weld.motion(scene)
         first, second = (_cropped(row, counts[half] >= LEAST_FRAMES) for half in (0, 1))
-        mesh = _joined(first, Mesh(second.vertices @ rotation.T + shift, second.faces))
+        mesh = _joined(first, Mesh(transform(second.vertices, rotation, shift), second.faces))
         poses = poses.copy()
         for k in range(len(kept) // 2, len(kept)):
             poses[k, :3, :3], poses[k, :3, 3] = rotation @ poses[k, :3, :3], rotation @ poses[k, :3, 3] + shift

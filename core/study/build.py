@@ -141,7 +141,7 @@ def _write_data(
         "not_told": NOT_TOLD,
     }
     text = json.dumps(told, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    path.write_text(f"window.BLADEATLAS_STUDY = {text};\n", encoding="ascii", newline="\n")
+    path.write_text(f"window.STUDY_DATA = {text};\n", encoding="ascii", newline="\n")
 
 
 def _lacks(right: Mapping[Task, frozenset[str]]) -> list[str]:

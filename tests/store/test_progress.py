@@ -10,8 +10,8 @@ import pytest
 
 import bench.service
 from bench.service.recording import Recording, read_recording
+from core.products.contract import Facts
 from core.settings import Settings
-from core.stage import Facts
 from core.states import StageState
 from core.task_key import stage_of
 from store.graph import CORE_GRAPH

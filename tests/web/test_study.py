@@ -101,7 +101,7 @@ def test_a_whole_run(study: Path, open_page: Open) -> None:
     page = opened.page
     key = json.loads((study / ANSWERS).read_text(encoding="utf-8"))
     script = (study / STUDY / "study.js").read_text(encoding="utf-8")
-    data = json.loads(script.removeprefix("window.BLADEATLAS_STUDY = ").removesuffix(";\n"))
+    data = json.loads(script.removeprefix("window.STUDY_DATA = ").removesuffix(";\n"))
     by_text = {one["text"].split("{")[0]: one["id"] for one in data["tasks"]}
     assert HOSTILE in page.locator("main").inner_text()
     begin(page)

@@ -36,7 +36,7 @@ def test_right_answers_lie_beside_the_study_and_not_in_it(study: Path) -> None:
     }
     script = (study / STUDY / "study.js").read_text(encoding="ascii")
     assert "<" not in script
-    data = json.loads(script.removeprefix("window.BLADEATLAS_STUDY = ").removesuffix(";\n"))
+    data = json.loads(script.removeprefix("window.STUDY_DATA = ").removesuffix(";\n"))
     assert data["contact"] == "</script>room 7"
     assert [one["id"] for one in data["tasks"]] == [task_id(task) for task in Task]
     assert not any(word in script for word in ('"right"', '"D0"', '"D1"'))

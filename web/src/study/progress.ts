@@ -23,11 +23,11 @@ export interface StudyData {
 
 declare global {
   interface Window {
-    BLADEATLAS_STUDY?: StudyData;
+    STUDY_DATA?: StudyData;
   }
 }
 
-const delivered = window.BLADEATLAS_STUDY;
+const delivered = window.STUDY_DATA;
 /** Why there is nothing to begin; null when there is. */
 export const failure: string | null = !delivered
   ? "The file study.js is not beside this page. Open index.html in the folder that `bladeatlas study` wrote."

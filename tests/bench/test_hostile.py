@@ -16,6 +16,7 @@ BUSY = 3.0
 """Programs for each core that want to run: beyond it a machine answers nobody in time, attacked or not."""
 
 
+@pytest.mark.long
 @pytest.mark.deployment
 def test_an_honest_client_is_served_beside_attackers(tmp_path: Path) -> None:
     if os.getloadavg()[0] > BUSY * len(os.sched_getaffinity(0)):

@@ -36,6 +36,10 @@ ROW_MAP = "row_map.svg"
 """Its map: blades seen, coverage, findings."""
 LIMITS = "limits.json"
 """Findings compared with the limits of the shop, where these are told."""
+GALLERY = "gallery"
+"""Folder of the gallery."""
+GALLERY_PAGE = f"{GALLERY}/index.html"
+"""The page to open in it."""
 VIEWER = "viewer"
 """Folder of the page of a model, below it: what the stages left, and what is written when it is published."""
 VIEWER_PAGE = f"{VIEWER}/index.html"
@@ -88,7 +92,7 @@ OUTPUTS: tuple[Output, ...] = (
     Output(CONFIDENCE, (("timeline", "confidence.json"),), needs_trust=True),
     Output(ROW, (("timeline", ROW),), needs_trust=True),
     Output(ROW_MAP, (("timeline", ROW_MAP),), needs_trust=True),
-    Output("gallery", (("gallery", ""),), folder=True),
+    Output("gallery", ((GALLERY, ""),), folder=True),
     Output(f"{VIEWER}/frames", (("pictures", "frames"),), folder=True),
     Output(f"{VIEWER}/{SPRITE}", (("pictures", SPRITE),)),
     *_OF_A_VIEWER,

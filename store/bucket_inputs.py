@@ -45,10 +45,10 @@ class AllowedBuckets:
             BadInput: `bad_url`; `bucket_not_allowed`, it is in none of them, or the list is empty.
         """
         place = url.removeprefix(SCHEME)
-        bucket, _, key = place.partition("/")
-        parts = key.split("/")
+        bucket, _, path = place.partition("/")
+        parts = path.split("/")
         # A server that keeps files in folders would take these for other places than S3 does.
-        if not bucket or not key or len(url) > MAX_URL or not url.isprintable() or {"", ".", ".."} & set(parts):
+        if not bucket or not path or len(url) > MAX_URL or not url.isprintable() or {"", ".", ".."} & set(parts):
             message = f"this is no file in a bucket: s3://bucket/key of at most {MAX_URL} characters"
             raise BadInput(message, code="bad_url", where="url")
         if not any(place.startswith(entry) for entry in self.entries):

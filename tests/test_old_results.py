@@ -37,8 +37,9 @@ from tests.worker.test_serve import serve
 from worker.events import Event
 from worker.local_run import run_inspection
 
-OF_THE_SERVER = re.compile(r"\.body\.request_id: |\.versions\.")
-"""Every request has an id of its own, and an inspection tells the versions of the program that answers."""
+OF_THE_SERVER = re.compile(r"\.body\.request_id: |\.versions\.|\.progress: ")
+"""Every request has an id of its own, an inspection tells the versions of the program that answers, and how far it has
+come follows what stages are known to take."""
 TUS = {"Tus-Resumable": "1.0.0", "Content-Type": "application/offset+octet-stream"}
 
 

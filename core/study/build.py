@@ -14,7 +14,7 @@ from pathlib import Path
 
 from core.errors import BadInput
 from core.json_files import JsonObject, read_json, write_json
-from core.outputs import DEFECTS, DETECTIONS, FRAMES, SUMMARY, VIEWER, VIEWER_PAGE
+from core.outputs import DEFECTS, DETECTIONS, FRAMES, GALLERY, GALLERY_PAGE, SUMMARY, VIEWER, VIEWER_PAGE
 from core.report.csv_form import read_csv
 from core.study.questions import NOT_TOLD, QUESTIONS, task_id
 from core.study.truth import UNKNOWN, Task, answers, boxed
@@ -29,7 +29,6 @@ ANSWERS = "answers.json"
 DATA = "study.js"
 SCENES = ("A", "B")
 PRACTICE = "practice"
-_GALLERY = "gallery"
 
 
 def build_study(results: tuple[Path, Path], out: Path, contact: str = "", practice: Path | None = None) -> list[str]:
@@ -81,7 +80,7 @@ def _answers(folder: Path) -> Mapping[Task, frozenset[str]]:
 
 
 def _require_pages(folder: Path) -> None:
-    for path, command in ((f"{_GALLERY}/index.html", "run"), (VIEWER_PAGE, "view")):
+    for path, command in ((GALLERY_PAGE, "run"), (VIEWER_PAGE, "view")):
         if not (folder / path).is_file():
             raise BadInput(f"'{folder}' has no {path}: `bladeatlas {command}` writes it", where="RESULT")
 
@@ -110,7 +109,7 @@ def _words_for(row: JsonObject, number: str, *, alone: bool) -> str:
 
 def _copy_scene(folder: Path, scene: Path) -> None:
     """The gallery and the page of a result; the page is today's, and told to keep nothing of what is done to it."""
-    for part in (_GALLERY, VIEWER):
+    for part in (GALLERY, VIEWER):
         shutil.copytree(folder / part, scene / part)
     for file, content in bundle().items():
         (scene / VIEWER / file).write_bytes(content)

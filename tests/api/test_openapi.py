@@ -82,7 +82,7 @@ def test_references_resolve(document: dict[str, Any]) -> None:
         assert reference.removeprefix("#/components/schemas/") in document["components"]["schemas"]
 
 
-REQUESTS = 14
+REQUESTS = 8
 """To each call; all of them take half a minute."""
 
 

@@ -26,7 +26,7 @@ from tests.worker.deployment import ROOT, Deployment
 from tests.worker.nginx import PREFIX, proxied
 from tests.worker.test_serve import free_port
 
-pytestmark = [pytest.mark.deployment, pytest.mark.tool("nginx")]
+pytestmark = [pytest.mark.deployment, pytest.mark.long, pytest.mark.tool("nginx")]
 _PAGE = ROOT / "docs" / "how-to" / "clients.md"
 _NODE = ROOT / "web" / "clients"
 

@@ -35,7 +35,7 @@ def test_a_stage_returns_the_product_that_its_spec_names(name: str) -> None:
     assert declared is product or (len(kinds) > 1 and all(issubclass(kind, product) for kind in kinds))
 
 
-KINDS = {spec.product for spec in STAGES.values()} | {PassedProduct, NoPartProduct}
+KINDS: set[type[Product]] = {spec.product for spec in STAGES.values()} | {PassedProduct, NoPartProduct}
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS, key=lambda kind: kind.__name__))

@@ -38,7 +38,7 @@ def test_a_stage_returns_the_product_that_its_spec_names(name: str) -> None:
 KINDS: set[type[Product]] = {spec.product for spec in STAGES.values()} | {PassedProduct, NoPartProduct}
 
 
-@pytest.mark.parametrize("kind", sorted(KINDS, key=lambda kind: kind.__name__))
+@pytest.mark.parametrize("kind", sorted(KINDS, key=str))
 def test_every_product_comes_back_from_its_facts(kind: type[Product]) -> None:
     facts = facts_of(kind)
     product = read_product(kind, json.loads(json.dumps(facts)), "x")

@@ -118,3 +118,8 @@ def test_poses_and_lens_carry_over_without_points() -> None:
     assert copy.num_points3D() == 0
     assert list(copy.camera(1).params[:2]) == [333.0, 334.0]
     np.testing.assert_allclose(copy.image(3).projection_center(), CENTERS[2], atol=1e-12)
+
+
+def test_no_track_has_no_point() -> None:
+    nothing = _nearest(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert nothing.shape == (0, 3)

@@ -42,7 +42,7 @@ test: lint docs ## everything, with whole deployments and the runs on the sample
 	$(UNIT)
 	PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -m "(sample or deployment) and not long"
 
-test-long: setup ## the walk-through on real jobs, faults and attackers at toy jobs, a simulated queue, made clients in Python and TypeScript, the kill test on the sample (20 minutes)
+test-long: setup ## the walk-through on real jobs, faults and attackers at toy jobs, a simulated queue, made clients in Python and TypeScript, second runs and the kill test on the sample (half an hour)
 	$(BIN)/pytest -m long
 
 bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs

@@ -252,6 +252,7 @@ def test_the_findings_lie_on_their_blades(finished: tuple[Path, Ended]) -> None:
     assert read_mesh(out / "mapping/mesh_defects.ply").extra["blade"].max() == len(row["blades"])
 
 
+@pytest.mark.long  # a minute or more
 def test_the_number_of_blades_costs_no_search(finished: tuple[Path, Ended], tmp_path: Path) -> None:
     out = tmp_path / "out"
     shutil.copytree(finished[0], out)
@@ -275,6 +276,7 @@ def test_running_again_is_instant_and_identical(finished: tuple[Path, Ended]) ->
     assert fingerprint(out) == before
 
 
+@pytest.mark.long  # a minute or more
 def test_changed_mapping_computes_mapping_only(finished: tuple[Path, Ended], tmp_path: Path) -> None:
     out = tmp_path / "out"
     shutil.copytree(finished[0], out)
@@ -296,6 +298,7 @@ def test_another_input_is_refused(finished: tuple[Path, Ended]) -> None:
     assert fingerprint(finished[0]) == before
 
 
+@pytest.mark.long  # a minute or more
 def test_a_static_camera_ends_without_reconstruction(tmp_path: Path) -> None:
     """An outcome, not bad input: exit 3, the flag that says why, and a row for every detection."""
     video = make_still_video(tmp_path / "still.mp4", VIDEO, 24)

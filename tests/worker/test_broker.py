@@ -173,6 +173,7 @@ def test_another_broker_does_as_well(place: Deployment) -> None:
     assert place.accepted_once("one")
 
 
+@pytest.mark.long  # it waits for the time itself
 def test_a_task_longer_than_the_visibility_timeout_runs_once(place: Deployment, broker: Redis) -> None:
     place.environment["BLADEATLAS_VISIBILITY_TIMEOUT_S"] = "1"
     place.create("one", split={"sleep_s": 16})

@@ -126,6 +126,10 @@ class Flag:
             "where": self.where,
         }
 
+    def explained(self) -> dict[str, object]:
+        """The form of `to_dict`, and what the code means."""
+        return {**self.to_dict(), "meaning": self.meaning}
+
     @classmethod
     def from_dict(cls, row: FlagFields) -> Flag:
         """Rebuild from `to_dict`; unknown codes and severities raise `StageFailed`."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import fsspec
+from tenacity import Retrying, retry_if_exception_type, stop_after_attempt
 
 from core.errors import BadInput
 from store.downloads import TRIES, Sink, changed, too_large, took_too_long
@@ -102,18 +103,21 @@ class BucketInputs:
 
     def _again(self, until: float, ask: Callable[[], T]) -> T:
         """The answer to a request that may be sent again."""
-        failures = 0
-        while True:
+
+        def once() -> T:
             if time.monotonic() >= until:
                 raise took_too_long()
-            try:
-                with _said():
-                    return ask()
-            except Unreachable:
-                failures += 1
-                if failures >= TRIES:
-                    raise
-                self.sleep(min(_PAUSE_S * 2**failures, max(0.0, until - time.monotonic())))
+            with _said():
+                return ask()
+
+        policy = Retrying(
+            retry=retry_if_exception_type(Unreachable),
+            wait=lambda state: min(_PAUSE_S * 2**state.attempt_number, max(0.0, until - time.monotonic())),
+            stop=stop_after_attempt(TRIES),
+            sleep=self.sleep,
+            reraise=True,
+        )
+        return policy(once)
 
 
 def _identity(files: Any, place: str) -> tuple[int, str]:

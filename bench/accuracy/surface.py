@@ -16,6 +16,7 @@ from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
+I64 = NDArray[np.int64]
 
 N_SAMPLES = 200_000
 REFERENCE_FRAMES = 60
@@ -65,13 +66,27 @@ def reference_faces(truth: Truth, surface: TriangleSurface) -> NDArray[np.int64]
 
 
 def sample_triangles(vertices: F64, faces: I32, count: int, seed: int) -> F64:
-    """(count, 3) area-uniform random points on triangles (square-root map of the unit square)."""
-    corners = vertices[faces]
+    """(count, 3) points of `drawn_on`."""
+    return drawn_on(vertices[faces], count, seed)[1]
+
+
+def drawn_on(corners: F64, count: int, seed: int) -> tuple[I64, F64]:
+    """Area-uniform random points on triangles (square-root map of the unit square).
+
+    Args:
+        corners: (m, 3, 3), not all without area.
+        count: points to draw.
+        seed: of the draw.
+
+    Returns:
+        (count,) the triangle that each lies on; (count, 3) the points.
+    """
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     rng = np.random.default_rng(seed)
-    chosen = corners[np.searchsorted(np.cumsum(areas), rng.random(count) * areas.sum(), side="right")]
+    rows = np.searchsorted(np.cumsum(areas), rng.random(count) * areas.sum(), side="right")
     root, share = np.sqrt(rng.random(count))[:, None], rng.random(count)[:, None]
-    return np.asarray((1 - root) * chosen[:, 0] + root * (1 - share) * chosen[:, 1] + root * share * chosen[:, 2])
+    a, b, c = (corners[rows, k] for k in range(3))
+    return rows, np.asarray((1 - root) * a + root * (1 - share) * b + root * share * c)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.accuracy.surface import drawn_on
 from bench.accuracy.true_row import TrueRow
 from bench.accuracy.truth import Truth
 from core.mapping.surface import Surface
@@ -103,15 +104,11 @@ def _drawn(truth: Truth, seed: int) -> tuple[F64, F64]:
     """Points evenly over the sides of the true blades, with unit normals; none of a hub alone."""
     corners = truth.vertices[truth.faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    doubled = np.linalg.norm(cross, axis=1)
-    normals = cross / np.maximum(doubled, 1e-300)[:, None]
+    normals = cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), 1e-300)
     middle = corners.mean(axis=1)
     outward = middle * np.array([1.0, 1.0, 0.0]) / np.hypot(middle[:, :1], middle[:, 1:2])
     sides = np.flatnonzero(np.abs((outward * normals).sum(axis=1)) <= RADIAL_COSINE)
     if not len(sides):
         return np.zeros((0, 3)), np.zeros((0, 3))
-    rng = np.random.default_rng(seed)
-    chosen = rng.choice(sides, POINTS, p=doubled[sides] / doubled[sides].sum())
-    root, share = np.sqrt(rng.random(POINTS))[:, None], rng.random(POINTS)[:, None]
-    a, b, c = (corners[chosen, k] for k in range(3))
-    return (1 - root) * a + root * (1 - share) * b + root * share * c, normals[chosen]
+    rows, points = drawn_on(corners[sides], POINTS, seed)
+    return points, normals[sides][rows]

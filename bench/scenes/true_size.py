@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
+from bench.accuracy.surface import drawn_on
 from bench.scenes.blades import DENT_DEPTH, Defect, Row, pitch_rad, surface_point
 from bench.scenes.render import defects_at
 from bench.scenes.spec import Scene
@@ -75,10 +76,7 @@ def _area(defect: Defect, seen: F64, row: Row, pitch: float) -> float:
     middle = row.vertices[row.faces].mean(axis=1)
     corners = row.vertices[row.faces[np.linalg.norm(middle - defect.center, axis=1) <= REACH * defect.radius_mm + 1.0]]
     size = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    rng = np.random.default_rng(defect.number)
-    chosen = corners[rng.choice(len(corners), SAMPLES, p=size / size.sum())]
-    root, share = np.sqrt(rng.random(SAMPLES))[:, None], rng.random(SAMPLES)[:, None]
-    points = (1 - root) * chosen[:, 0] + root * (1 - share) * chosen[:, 1] + root * share * chosen[:, 2]
+    _, points = drawn_on(corners, SAMPLES, defect.number)
     own = defects_at(points, np.ones(SAMPLES, bool), (defect,), pitch) == defect.number
     near = cKDTree(seen).query(points)[0] <= SEEN_MM
     return float(size.sum() * (own & near).mean())

@@ -109,7 +109,7 @@ def build_quality(
         "verdict": verdict,
         "state": record.state,
         "reason": record.reason or None,
-        "flags": [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags],
+        "flags": [flag.explained() for flag in flags],
         "checks": [] if model is None else [flag.to_dict() for flag in model.checks],
         "notes": _notes(record),
         "funnel": steps,

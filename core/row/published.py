@@ -124,7 +124,7 @@ def _flag(folder: Path, flags: Mapping[int, Sequence[Flag]], scaled: bool = Fals
     if not new and kept == quality["flags"]:
         return
     flags_now = in_order([*(Flag.from_dict(flag) for flag in kept), *new])
-    shown = [{**flag.to_dict(), "meaning": flag.meaning} for flag in flags_now]
+    shown = [flag.explained() for flag in flags_now]
     verdict = Verdict(quality["verdict"])
     if verdict != Verdict.REFUSED:
         verdict = verdict_by(flags_now)

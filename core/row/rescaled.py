@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import hypot, sqrt
+from math import sqrt
 from pathlib import Path
 
 from core.errors import BadInput
@@ -13,7 +13,7 @@ from core.measure.scale import join_scales
 from core.outputs import ROW, SUMMARY, model_folder
 from core.scene.defect import DefectRecord
 from core.scene.detection import DetectionRow
-from core.scene.size import LengthUnit, Scale, ScaleSource, Size
+from core.scene.size import LengthUnit, Measure, Scale, ScaleSource, Size
 
 _POWERS = {"length": 1, "width": 1, "area": 2, "depth": 1}
 MEASURED = (*(f"{name}{end}" for name in _POWERS for end in ("", "_sigma")), "length_unit")
@@ -53,11 +53,13 @@ class ChangeOfScale:
 
 def _rescaled(value: float, sigma: float, power: int, old: Scale | None, new: Scale) -> tuple[float, float]:
     """A measure and its standard deviation in mm; the part of the deviation that the old scale had is taken out."""
-    if old is not None:
-        sigma = sqrt(max(sigma**2 - (power * old.share * value) ** 2, 0.0)) / old.value**power
-        value /= old.value**power
-    scaled = new.value**power * value
-    return scaled, hypot(new.value**power * sigma, power * new.share * scaled)
+    if old is None:
+        measure = Measure(value, sigma, 0.0, 0.0)
+    else:
+        own = sqrt(max(sigma**2 - (power * old.share * value) ** 2, 0.0))
+        measure = Measure(value, own, 0.0, 0.0).unscaled(old, power)
+    scaled = measure.scaled(new, power)
+    return scaled.value, scaled.sigma
 
 
 def changed_scale(old: Scale | None, of_row: Scale | None) -> ChangeOfScale:

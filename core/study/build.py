@@ -19,7 +19,7 @@ from core.report.csv_form import read_csv
 from core.study.questions import NOT_TOLD, QUESTIONS, task_id
 from core.study.truth import UNKNOWN, Task, answers, boxed
 from core.viewer.deliver import DATA as PAGE_DATA
-from core.viewer.deliver import bundle, study_bundle
+from core.viewer.deliver import ascii_json, bundle, in_script, study_bundle
 
 SCHEMA_VERSION = 1
 STUDY = "study"
@@ -139,8 +139,8 @@ def _write_data(
         "practice": practice,
         "not_told": NOT_TOLD,
     }
-    text = json.dumps(told, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    path.write_text(f"window.STUDY_DATA = {text};\n", encoding="ascii", newline="\n")
+    script = f"window.STUDY_DATA = {in_script(ascii_json(told))};\n"
+    path.write_text(script, encoding="ascii", newline="\n")
 
 
 def _lacks(right: Mapping[Task, frozenset[str]]) -> list[str]:

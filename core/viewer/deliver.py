@@ -8,6 +8,7 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
+from core.json_files import JsonObject
 from core.outputs import DOCUMENT
 from core.viewer.document import ViewerSource, viewer_document
 
@@ -31,6 +32,16 @@ def _files(folder: Traversable) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in files if file.is_file()}
 
 
+def ascii_json(document: JsonObject) -> str:
+    """JSON on one line that any encoding reads alike."""
+    return json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+
+
+def in_script(text: str) -> str:
+    """JSON whose texts, which strangers wrote, cannot end a script that it may be pasted into."""
+    return text.replace("<", "\\u003c")
+
+
 def write_page(folder: Path, source: ViewerSource, surface: Path | None) -> list[str]:
     """Write the page, its document and the same as a script; gives the names of the files.
 
@@ -44,11 +55,11 @@ def write_page(folder: Path, source: ViewerSource, surface: Path | None) -> list
     """
     folder.mkdir(parents=True, exist_ok=True)
     document = viewer_document(source)
-    text = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    text = ascii_json(document)
     (folder / DOCUMENT).write_text(text + "\n", encoding="ascii", newline="\n")
     shown = surface if document["surface"] is not None else None
     encoded = None if shown is None else base64.b64encode(shown.read_bytes()).decode("ascii")
-    viewer = text.replace("<", "\\u003c")  # no text of the annotations can end a script that it may be pasted into
+    viewer = in_script(text)
     mesh = "null" if encoded is None else f'"{encoded}"'
     script = f"window.BLADEATLAS = {{viewer: {viewer}, surface: {mesh}}};\n"
     (folder / DATA).write_text(script, encoding="ascii", newline="\n")

@@ -55,18 +55,22 @@ class Lens:
     focal_px: float
     k3: float
 
+    def angle(self, radius_px: F64 | float) -> F64:
+        """Angle off the axis (rad) that is seen so far from the image centre; of the shape of `radius_px`."""
+        return np.asarray(np.multiply(radius_px, 1.0 / self.focal_px) + self.k3 * np.power(radius_px, 3), np.float64)
+
     def rays(self, x_px: F64, y_px: F64) -> F64:
         """(n, 3) unit viewing directions of image points in the camera frame (OpenCV axes)."""
         dx, dy = x_px - self.width / 2, y_px - self.height / 2
         r = np.hypot(dx, dy)
-        theta = r / self.focal_px + self.k3 * r**3
+        theta = self.angle(r)
         scale = np.where(r > 0, np.sin(theta) / np.where(r > 0, r, 1.0), 1.0 / self.focal_px)
         return np.stack([dx * scale, dy * scale, np.cos(theta)], axis=1)
 
     def project(self, in_cam: F64) -> F64:
         """(n, 2) image points of (n, 3) points in the camera frame; NaN for those beyond the corners' directions."""
         radii = np.linspace(0.0, np.hypot(self.width, self.height) / 2, RADII)
-        angles = radii / self.focal_px + self.k3 * radii**3
+        angles = self.angle(radii)
         away = np.hypot(in_cam[:, 0], in_cam[:, 1])
         r = np.interp(np.arctan2(away, in_cam[:, 2]), angles, radii, right=np.nan)
         scale = r / np.maximum(away, 1e-300)

@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from bench.kept import markdown_table
 from bench.scenes.suite import FAMILIES
 from core.errors import BadInput
 
@@ -22,6 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reuse", action="store_true", help="go on in kept result folders; no time is told where one was there"
     )
     parser.add_argument("--fit", action="store_true", help="fit the confidence on the kept runs of the family")
+    parser.add_argument(
+        "--lens",
+        metavar="SEED,...",
+        help="only find the lens with each of these seeds, against the true one",
+    )
     parser.add_argument("--make", action="store_true", help="only render")
 
 
@@ -56,6 +62,13 @@ def command(arguments: argparse.Namespace) -> None:
     column = THESIS if arguments.thesis else DEFAULT
     if options:
         column = Column(f"{column.name}-set", column.preset, {**column.options, **options})
+    if arguments.lens is not None:
+        from bench.scenes.lens import LENS_HEAD, find_lens, lens_cells
+
+        seeds = [_seed(text) for text in arguments.lens.split(",")]
+        lenses = [find_lens(arguments.out, scene, column, seed) for scene in scenes for seed in seeds]
+        print(markdown_table(LENS_HEAD, [lens_cells(one) for one in lenses]))
+        return
     bench, found = Bench(arguments.out, arguments.keep, arguments.reuse), []
     for scene in scenes:
         found.append(bench.score(scene, column))
@@ -71,3 +84,10 @@ def command(arguments: argparse.Namespace) -> None:
         names = hard_half(scenes, thesis)
         hard = [one for one in can if one["scene"] in names]
         print(confidence_line(f"hard half by the thesis's column ({', '.join(names)})", hard))
+
+
+def _seed(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise BadInput(f"'{text}' is no whole number", where="--lens") from None

@@ -30,19 +30,20 @@ lint: setup
 docs: setup ## build the documentation into out/site; a broken link or a page that is in no menu fails
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
-# Unit tests wait for databases and child processes more than they compute, so two files run side by side. Whole
-# deployments and runs on the sample fill the cores and watch the clock: one after the other. Compiled modules are kept
-# whatever the environment says, because hundreds of processes of this code are started.
-UNIT := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -n 2 --dist loadfile -m "not sample and not deployment"
+# Unit tests wait for databases and child processes more than they compute, so four files run side by side on two cores:
+# in two thirds of the time of two files. Whole deployments and runs on the sample fill the cores and watch the clock: one
+# after the other. Compiled modules are kept whatever the environment says, because hundreds of processes of this code are
+# started.
+UNIT := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -n 4 --dist loadfile -m
 
-check: lint docs ## lint, types, layers, documentation and unit tests (minutes)
-	$(UNIT)
+check: lint docs ## lint, types, layers, documentation and the unit tests that are quick (minutes)
+	$(UNIT) "not sample and not deployment and not slow"
 
 test: lint docs ## everything, with whole deployments and the runs on the sample
-	$(UNIT)
+	$(UNIT) "not sample and not deployment"
 	PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -m "(sample or deployment) and not long"
 
-test-long: setup ## the walk-through on real jobs, faults and attackers at toy jobs, a simulated queue, made clients in Python and TypeScript, second runs and the kill test on the sample (half an hour)
+test-long: setup ## the walk-through on real jobs, faults at toy jobs, a simulated queue, made clients in Python and TypeScript, second runs and the kill test on the sample (half an hour)
 	$(BIN)/pytest -m long
 
 bench-speed: setup ## time the parts of RESULT (default out/demo) beside other programs

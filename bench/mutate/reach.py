@@ -76,7 +76,8 @@ def environment(root: Path) -> dict[str, str]:
     what has not changed.
     """
     imports = os.pathsep.join([str(root), *_beside()])
-    quick = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONDONTWRITEBYTECODE": ""}
+    # What a caller adds to every call of pytest would change what these runs print.
+    quick = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONDONTWRITEBYTECODE": "", "PYTEST_ADDOPTS": ""}
     return {**os.environ, **quick, "PYTHONPATH": imports}
 
 

@@ -348,9 +348,9 @@ def test_a_key_that_may_not_review_is_told_so(deployed: Deployed, look: Callable
 def test_what_could_not_be_sent_waits_for_the_service(deployed: Deployed, look: Callable[[str], Opened]) -> None:
     one = reviewed(deployed)
     page = open_finding(look, deployed, one, NEAR_FINDING).page
-    page.route("**/reviews", lambda route: route.abort())
+    page.context.set_offline(True)
     page.keyboard.press("a")
     page.get_by_text("The service does not answer.").wait_for()
-    page.unroute("**/reviews")
+    page.context.set_offline(False)
     page.reload()
     wait_until(lambda: [kept.action for kept in deployed.records(one)] == ["accept"])

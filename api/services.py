@@ -15,6 +15,7 @@ from store.inspections import Inspections
 from store.logs import InspectionLogs
 from store.plan import Plan
 from store.settings import DeploymentSettings
+from store.transfers import Transfers
 from store.uploads import Uploads
 
 
@@ -46,6 +47,11 @@ class Services:
     def uploads(self) -> Uploads:
         """Resumable uploads; their bytes lie on this machine until an inspection takes them."""
         return Uploads(self.db, self.settings.folder("uploads"), self.settings.upload_hours)
+
+    @property
+    def transfers(self) -> Transfers:
+        """Inputs that are fetched by URL."""
+        return Transfers(self.db, self.settings.lease_s)
 
     @property
     def admission(self) -> Admission:

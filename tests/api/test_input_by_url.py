@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from datetime import timedelta
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import ip_network
 from pathlib import Path
@@ -21,6 +22,7 @@ from sqlalchemy import select
 
 from api.app import create_app
 from store.downloads import AllowedHosts, Downloads
+from store.integration_models import Transfer
 from store.leasing import input_files
 from store.models import Inspection, Upload
 from store.outbound import Outbound
@@ -145,7 +147,7 @@ def make_place(backend: Backend, files: Files, serve: Callable[[FastAPI], str], 
     place = Place(backend, app, serve(app))
     hosts = AllowedHosts.parse(f"files.test:{files.port}, inside.test:{files.port}")
     outbound = Outbound([ip_network(f"{HERE}/32")], place.look_up)
-    app.state.bladeatlas.fetches.downloads = Downloads(outbound, hosts, sleep=lambda _: None)
+    app.state.bladeatlas.fetches.fetcher.downloads = Downloads(outbound, hosts, sleep=lambda _: None)
     return place
 
 
@@ -162,6 +164,13 @@ def kept(place: Place, answer: httpx.Response) -> list[bytes]:
 def uploads_left(place: Place) -> int:
     with place.backend.db.read() as session:
         return len(session.scalars(select(Upload).where(Upload.removed_at.is_(None))).all())
+
+
+def let_pass(place: Place, seconds: float) -> None:
+    """Requests were sent so much longer ago."""
+    with place.backend.db.write() as session:
+        for row in session.scalars(select(Transfer)):
+            row.asked_at -= timedelta(seconds=seconds)
 
 
 def refused(answer: httpx.Response) -> tuple[int, str, str]:
@@ -214,16 +223,16 @@ def test_who_asks_again_takes_up_the_same_transfer(place: Place, files: Files) -
 
 
 def test_what_nobody_took_up_soon_is_fetched_anew(place: Place, files: Files) -> None:
-    moment = [0.0]
-    place.app.state.bladeatlas.fetches.clock = lambda: moment[0]
     wrong = {"video_url": files.url(), "parameters": {"options": {"no.such": 1}}}
     for later, requests in ((0.0, 1), (100.0, 1), (1000.0, 2)):
-        moment[0] += later
+        let_pass(place, later)
         assert place.post_until(**wrong).json()["code"] == "bad_parameters"
         assert len(files.asked) == requests
+        assert uploads_left(place) == 1
     files.content["/video"] = DATA[:5]
-    moment[0] += 1000.0
+    let_pass(place, 1000.0)
     assert kept(place, place.post_until(video_url=files.url())) == [DATA[:5]]
+    assert uploads_left(place) == 0
 
 
 @pytest.mark.parametrize(

@@ -116,7 +116,7 @@ class Kept:
         self.data += data
         self._then()
 
-    def restart(self) -> None:
+    def restart(self, tag: str) -> None:
         self.data = b""
 
 
@@ -127,10 +127,10 @@ def test_a_file_that_changes_and_one_that_takes_too_long(s3: str) -> None:
     source = BucketInputs(AllowedBuckets.parse(bucket), options(s3), sleep=lambda _: None)
     sink = Kept(lambda: files.pipe_file(f"{bucket}/a.mp4", VIDEO[::-1]))
     with pytest.raises(BadInput) as changed:
-        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 60, lambda _: sink)
+        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 60, lambda *_: sink)
     assert changed.value.code == "fetch_changed"
     with pytest.raises(BadInput) as late:
-        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 0, lambda _: sink)
+        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 0, lambda *_: sink)
     assert late.value.code == "fetch_timeout"
 
 

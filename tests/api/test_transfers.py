@@ -1,0 +1,238 @@
+"""Transfers of inputs by URL that outlive the process that fetches, and are known to every other one."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from sqlalchemy import select
+
+from bench.soak.servers import free_port
+from store.db import Database
+from store.files import input_key
+from store.leasing import input_files
+from store.models import Inspection, Upload
+from store.uploads import UploadFile
+from tests.api.conftest import ROOT, Backend, wait_until
+from tests.api.file_server import DATA, HERE, Files, files_served
+from tests.api.test_input_by_url import Place, kept, make_place, refused, uploads_left
+from tests.databases import BOTH, database
+
+MIB = 1 << 20
+ONE_EACH = {"max_open_uploads_per_owner": 1, "max_fetches_per_owner": 1}
+"""What is taken over is nothing more: with these limits it would be refused otherwise."""
+
+
+SHORT = (0.4, 0.1)
+"""A lease is over soon after its holder died."""
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
+    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "ca.pem"))
+    with files_served(tmp_path / "ca.pem") as served:
+        yield served
+
+
+@dataclass
+class Two:
+    """Two processes of the API, which have a database and a folder in common."""
+
+    first: Place
+    second: Place
+
+    def rows(self) -> list[Upload]:
+        with self.first.backend.db.read() as session:
+            return list(session.scalars(select(Upload)))
+
+    def leftovers(self) -> list[Path]:
+        return list(self.first.backend.services.settings.folder("uploads").iterdir())
+
+
+@pytest.fixture
+def two(
+    request: pytest.FixtureRequest,
+    backend: Backend,
+    files: Files,
+    serve: Callable[[FastAPI], str],
+    unprobed: None,
+    monkeypatch: pytest.MonkeyPatch,
+) -> Two:
+    """A test says how long leases hold, in seconds, and how often they are renewed."""
+    monkeypatch.setattr("api.transferring._COMMIT_S", 0.0)
+    lease_s, heartbeat_s = getattr(request, "param", (30.0, 10.0))
+    settings = {"lease_s": lease_s, "heartbeat_s": heartbeat_s, **ONE_EACH}
+    made = Two(*(make_place(backend, files, serve, **settings) for _ in range(2)))
+    made.first.app.state.bladeatlas.fetches.wait_s = 0.1
+    return made
+
+
+@pytest.fixture
+def breaks_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The disk fails in the moment of the second piece, as nobody expects."""
+    write, failed = UploadFile.write, []
+
+    def fails(file: UploadFile, data: bytes) -> None:
+        if file.offset and not failed:
+            failed.append(1)
+            raise OSError(errno.EIO, "the disk fails")
+        write(file, data)
+
+    monkeypatch.setattr(UploadFile, "write", fails)
+
+
+def test_every_process_knows_how_far_a_transfer_is(two: Two, files: Files) -> None:
+    files.piece_s = 0.04
+    assert two.first.post(video_url=files.url()).status_code == 409
+    two.second.app.state.bladeatlas.fetches.wait_s = 0.1
+    wait_until(lambda: len(two.rows()) == 1 and two.rows()[0].offset >= MIB)
+    told = two.second.post(video_url=files.url())
+    assert (told.status_code, told.json()["code"]) == (409, "fetching")
+    assert told.json()["detail"].startswith(f"{two.rows()[0].offset} of {len(DATA)} bytes")
+    assert kept(two.second, two.second.post_until(video_url=files.url())) == [DATA]
+    assert len(files.asked) == 1
+    assert (uploads_left(two.first), two.leftovers()) == (0, [])
+
+
+def test_what_cannot_be_had_is_told_by_any_process_and_once(two: Two, files: Files) -> None:
+    files.piece_s = 0.01
+    wrong = {"video_url": files.url(), "video_sha256": "0" * 64}
+    assert two.first.post(**wrong).status_code == 409
+    assert refused(two.second.post_until(**wrong)) == (422, "checksum", "/video_url")
+    assert len(files.asked) == 1
+    assert refused(two.second.post_until(**wrong)) == (422, "checksum", "/video_url")
+    assert len(files.asked) == 2
+    assert (uploads_left(two.first), two.leftovers()) == (0, [])
+
+
+@pytest.mark.parametrize("two", [SHORT], indirect=True)
+@pytest.mark.parametrize("tag", ['"one"', ""])
+@pytest.mark.usefixtures("breaks_once")
+def test_a_transfer_that_broke_off_goes_on_in_its_upload(two: Two, files: Files, tag: str) -> None:
+    files.tag = tag
+    two.first.app.state.bladeatlas.fetches.wait_s = 20.0
+    assert two.first.post(video_url=files.url()).status_code == 500
+    (before,) = two.rows()
+    assert MIB <= before.offset < before.length == len(DATA)
+    sha256 = hashlib.sha256(DATA).hexdigest()
+    answer = two.second.post_until(video_url=files.url())
+    assert kept(two.second, answer) == [DATA]
+    assert [(row.id, row.sha256) for row in two.rows()] == [(before.id, sha256)]
+    assert [wanted for _, wanted in files.asked] == ["", f"bytes={before.offset}-" if tag else ""]
+    assert (uploads_left(two.first), two.leftovers()) == (0, [])
+
+
+@pytest.mark.parametrize("two", [SHORT], indirect=True)
+@pytest.mark.usefixtures("breaks_once")
+def test_addresses_are_checked_again_when_a_transfer_is_taken_over(two: Two, files: Files) -> None:
+    two.first.app.state.bladeatlas.fetches.wait_s = 20.0
+    assert two.first.post(video_url=files.url()).status_code == 500
+    two.second.leads_to = lambda name, times: ["127.0.0.1"]
+    assert refused(two.second.post_until(video_url=files.url())) == (422, "private_address", "/video_url")
+    assert len(files.asked) == 1
+    assert (uploads_left(two.first), two.leftovers()) == (0, [])
+
+
+@pytest.mark.parametrize("two", [(0.4, 60.0)], indirect=True)
+def test_who_stands_still_loses_the_lease_and_writes_nothing_more(two: Two, files: Files) -> None:
+    files.piece_s = 0.06
+    assert two.first.post(video_url=files.url()).status_code == 409
+    wait_until(lambda: any(row.offset for row in two.rows()))
+    files.piece_s = 0.02
+    assert kept(two.second, two.second.post_until(video_url=files.url())) == [DATA]
+    wait_until(lambda: not two.first.app.state.bladeatlas.fetches._under_way)
+    assert [wanted for _, wanted in files.asked] == ["", ""], "the first had its file still open"
+    assert sorted(row.offset == row.length for row in two.rows()) == [False, True]
+    assert (uploads_left(two.first), two.leftovers()) == (0, [])
+
+
+@dataclass
+class Fleet:
+    """Processes of the API over one database and one folder."""
+
+    db: Database
+    folder: Path
+    environment: dict[str, str]
+    servers: list[tuple[str, subprocess.Popen[bytes]]]
+
+    def upload(self) -> Upload:
+        """The only one that there ever was."""
+        with self.db.read() as session:
+            return session.scalars(select(Upload)).one()
+
+    def has_a_part(self) -> bool:
+        with self.db.read() as session:
+            return bool(session.scalar(select(Upload.offset)))
+
+
+@pytest.fixture(params=BOTH)
+def fleet(request: pytest.FixtureRequest, tmp_path: Path, files: Files) -> Iterator[Fleet]:
+    with database(request.param, tmp_path) as db:
+        settings = {
+            "DATA_DIR": tmp_path / "data",
+            "DATABASE_URL": db.engine.url.render_as_string(hide_password=False),
+            "RESERVE_BYTES": 0,
+            "INPUT_HOSTS": f"{HERE}:{files.port}",
+            "OUTBOUND_NETWORKS": f"{HERE}/32",
+            "LEASE_S": 1.0,
+            "HEARTBEAT_S": 0.3,
+            **{name.upper(): value for name, value in ONE_EACH.items()},
+        }
+        environment = {**os.environ, **{f"BLADEATLAS_{name}": str(value) for name, value in settings.items()}}
+        words = [sys.executable, "-m", "uvicorn", "--factory", "tests.api.unprobed:create_app", "--log-level", "error"]
+        made = Fleet(db, tmp_path / "data", environment, [])
+        try:
+            for port in (free_port(), free_port()):
+                process = subprocess.Popen([*words, "--port", str(port)], cwd=ROOT, env=environment)
+                made.servers.append((f"http://127.0.0.1:{port}", process))
+            for address, _ in made.servers:
+                wait_until(lambda address=address: _answers(address), 60)  # type: ignore[misc]
+            yield made
+        finally:
+            for _, process in made.servers:
+                process.kill()
+                process.wait()
+
+
+def _answers(address: str) -> bool:
+    try:
+        return httpx.get(f"{address}/healthz").status_code == 200
+    except httpx.TransportError:
+        return False
+
+
+@pytest.mark.deployment
+def test_another_process_completes_what_a_killed_one_was_fetching(fleet: Fleet, files: Files) -> None:
+    (first, process), (second, _) = fleet.servers
+    files.content["/video"], files.piece_s = DATA * 2, 0.04
+    body = {"video_url": files.url(host=HERE), "video_sha256": hashlib.sha256(DATA * 2).hexdigest()}
+    killer = threading.Thread(target=lambda: (wait_until(fleet.has_a_part), process.kill()))
+    killer.start()
+    with pytest.raises(httpx.TransportError):
+        httpx.post(f"{first}/v1/inspections", json=body, timeout=60)
+    killer.join()
+    process.wait()
+    came = fleet.upload().offset
+    assert 0 < came < len(DATA) * 2
+    files.piece_s = 0.0
+    answer = httpx.post(f"{second}/v1/inspections", json=body, timeout=60)
+    assert answer.status_code == 202, answer.text
+    assert [wanted for _, wanted in files.asked] == ["", f"bytes={came}-"]
+    upload = fleet.upload()
+    assert (upload.sha256, upload.removed_at is not None) == (body["video_sha256"], True)
+    assert list((fleet.folder / "uploads").iterdir()) == []
+    with fleet.db.read() as session:
+        (row,) = session.scalars(select(Inspection))
+        (video,) = input_files(row)
+    assert row.id == answer.json()["id"]
+    assert (fleet.folder / "artifacts" / input_key(video.video_sha256, "video")).read_bytes() == DATA * 2

@@ -97,37 +97,35 @@ class Fetches:
             if view is not None and view.error is not None:
                 await run_in_threadpool(self._remove, partial(self.services.transfers.end, name))
                 raise _refused(wanted[view.failed], view.error)  # who asks again begins anew
+            fetch = self._fetch_of(name, owner, wanted, view)  # before the time is looked at: no request is for nothing
             left = until - time.monotonic()
             if left <= 0:
                 raise _under_way(view)
-            await self._wait(name, owner, wanted, view, left)
+            await _something_new(fetch, left)
 
     async def done(self, owner: str, wanted: Sequence[Wanted]) -> None:
         """The files of this request were taken over: their uploads end."""
         await run_in_threadpool(self._remove, partial(self.services.transfers.end, _name(owner, wanted)))
 
-    async def _wait(
-        self, name: str, owner: str, wanted: Sequence[Wanted], view: TransferView | None, seconds: float
-    ) -> None:
-        """Wait for something new, and fetch meanwhile what nobody fetches."""
-        fetch = self._under_way.get(name)
-        if fetch is None and (view is None or (view.free and self._full(owner) is None)):
-            fetch = self._start(name, owner, wanted, known=view is not None)
-        if fetch is None:  # another process is at it
-            await asyncio.sleep(min(_LOOK_S, seconds))
-            return
-        done, _ = await asyncio.wait((fetch.task,), timeout=seconds)
-        if done:
-            fetch.task.result()  # raises what nobody expects
+    def _fetch_of(self, name: str, owner: str, wanted: Sequence[Wanted], view: TransferView | None) -> _Fetch | None:
+        """The transfer as this process carries it out, also when nobody does yet; None when it is another's.
 
-    def _start(self, name: str, owner: str, wanted: Sequence[Wanted], *, known: bool) -> _Fetch:
-        """Carry out a transfer, one that is known under a new lease."""
-        if not known and (full := self._full(owner)) is not None:
+        Raises:
+            LimitReached: it is new, and as many are under way as may be.
+        """
+        fetch = self._under_way.get(name)
+        if fetch is not None or not (view is None or view.free):
+            return fetch
+        full = self._full(owner)
+        if full is None:
+            task = asyncio.create_task(self._run(name, owner, wanted, known=view is not None))
+            fetch = self._under_way[name] = _Fetch(owner, task)
+        elif view is None:
             raise full
-        fetch = self._under_way[name] = _Fetch(owner, asyncio.create_task(self._run(name, owner, wanted, known)))
         return fetch
 
-    async def _run(self, name: str, owner: str, wanted: Sequence[Wanted], known: bool) -> None:
+    async def _run(self, name: str, owner: str, wanted: Sequence[Wanted], *, known: bool) -> None:
+        """Carry out a transfer, one that is known under a new lease."""
         transfers = self.services.transfers
         take = transfers.take if known else partial(transfers.begin, owner=owner, files=wanted)
 
@@ -169,6 +167,16 @@ class Fetches:
         """Remove the files of the uploads that a change in the database ended."""
         for upload_id in end():
             self.services.uploads.remove(upload_id)
+
+
+async def _something_new(fetch: _Fetch | None, seconds: float) -> None:
+    """Wait until a transfer is over, or until it is worth to look how far another process is."""
+    if fetch is None:
+        await asyncio.sleep(min(_LOOK_S, seconds))
+        return
+    done, _ = await asyncio.wait((fetch.task,), timeout=seconds)
+    if done:
+        fetch.task.result()  # raises what nobody expects
 
 
 def _name(owner: str, wanted: Sequence[Wanted]) -> str:

@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,7 +34,7 @@ ONE_EACH = {"max_open_uploads_per_owner": 1, "max_fetches_per_owner": 1}
 """What is taken over is nothing more: with these limits it would be refused otherwise."""
 
 
-SHORT = (0.4, 0.1)
+SHORT = {"lease_s": 0.4, "heartbeat_s": 0.1}
 """A lease is over soon after its holder died."""
 
 
@@ -68,10 +69,9 @@ def two(
     unprobed: None,
     monkeypatch: pytest.MonkeyPatch,
 ) -> Two:
-    """A test says how long leases hold, in seconds, and how often they are renewed."""
+    """A test may say how long leases hold, how often they are renewed, and more settings."""
     monkeypatch.setattr("api.transferring._COMMIT_S", 0.0)
-    lease_s, heartbeat_s = getattr(request, "param", (30.0, 10.0))
-    settings = {"lease_s": lease_s, "heartbeat_s": heartbeat_s, **ONE_EACH}
+    settings = {**ONE_EACH, **getattr(request, "param", {})}
     made = Two(*(make_place(backend, files, serve, **settings) for _ in range(2)))
     made.first.app.state.bladeatlas.fetches.wait_s = 0.1
     return made
@@ -91,8 +91,9 @@ def breaks_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(UploadFile, "write", fails)
 
 
+@pytest.mark.parametrize("two", [{"lease_s": 1.2, "heartbeat_s": 0.1}], indirect=True)
 def test_every_process_knows_how_far_a_transfer_is(two: Two, files: Files) -> None:
-    files.piece_s = 0.04
+    files.piece_s = 0.06  # longer than a lease, which is renewed
     assert two.first.post(video_url=files.url()).status_code == 409
     two.second.app.state.bladeatlas.fetches.wait_s = 0.1
     wait_until(lambda: len(two.rows()) == 1 and two.rows()[0].offset >= MIB)
@@ -143,7 +144,23 @@ def test_addresses_are_checked_again_when_a_transfer_is_taken_over(two: Two, fil
     assert (uploads_left(two.first), two.leftovers()) == (0, [])
 
 
-@pytest.mark.parametrize("two", [(0.4, 60.0)], indirect=True)
+@pytest.mark.parametrize("two", [{**SHORT, "max_open_uploads_per_owner": 2}], indirect=True)
+@pytest.mark.usefixtures("breaks_once")
+def test_who_has_no_place_for_a_transfer_now_refuses_none_that_was_begun(two: Two, files: Files) -> None:
+    two.first.app.state.bladeatlas.fetches.wait_s = 20.0
+    assert two.first.post(video_url=files.url()).status_code == 500
+    fetches = two.second.app.state.bladeatlas.fetches
+    fetches.wait_s, files.piece_s, files.content["/slow"] = 0.1, 0.5, DATA[:MIB]
+    assert two.second.post(video_url=files.url("/slow")).json()["code"] == "fetching"
+    time.sleep(SHORT["lease_s"])
+    assert two.second.post(video_url=files.url()).json()["code"] == "fetching"
+    assert two.second.post(video_url=files.url("/notes")).json()["code"] == "too_many_fetches_of_owner"
+    assert [path for path, _ in files.asked] == ["/video", "/slow"]
+    fetches.wait_s, files.piece_s = 20.0, 0.0
+    assert kept(two.second, two.second.post_until(video_url=files.url())) == [DATA]
+
+
+@pytest.mark.parametrize("two", [{"lease_s": 0.4, "heartbeat_s": 60.0}], indirect=True)
 def test_who_stands_still_loses_the_lease_and_writes_nothing_more(two: Two, files: Files) -> None:
     files.piece_s = 0.06
     assert two.first.post(video_url=files.url()).status_code == 409

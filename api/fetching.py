@@ -27,7 +27,6 @@ from store.admission import LimitReached
 from store.bucket_inputs import AllowedBuckets, BucketInputs
 from store.downloads import AllowedHosts, Downloads
 from store.integration_models import TransferState
-from store.leasing import unique_name
 from store.outbound import Outbound
 from store.transfers import TransferView, WantedFile
 from store.uploads import Digests
@@ -64,8 +63,6 @@ class Fetches:
     services: Services
     digests: Digests
     wait_s: float = WAIT_S
-    name: str = field(default_factory=unique_name)
-    """The holder of its leases."""
     fetcher: Fetcher = field(init=False)
     _under_way: dict[str, _Fetch] = field(default_factory=dict)
 
@@ -130,7 +127,7 @@ class Fetches:
         take = transfers.take if known else partial(transfers.begin, owner=owner, files=wanted)
 
         def run() -> None:
-            lease = take(name, holder=self.name)
+            lease = take(name, holder=self.services.name)
             if lease is not None:
                 self.fetcher.run(lease)
 

@@ -161,6 +161,11 @@ class Transfers:
             until = self._until(self.db.now(session))
             return changed(session, update(Transfer).where(*_held(lease)).values(lease_expires_at=until))
 
+    def take_over(self, holder: str) -> None:
+        """Free the leases of a holder that is known to be gone."""
+        with self.db.write() as session:
+            changed(session, update(Transfer).where(Transfer.holder == holder).values(lease_expires_at=None))
+
     def set_upload(self, session: Session, lease: TransferLease, number: int, upload_id: str, tag: str) -> int | None:
         """In the transaction that makes the upload of a file: write it down, and end the one that it replaces.
 

@@ -29,6 +29,8 @@ class Files:
     redirects: dict[str, str] = field(default_factory=dict)
     cut_after: list[int] = field(default_factory=list)
     """Bytes after which the next answers are cut off, one after the other."""
+    stops: list[threading.Event] = field(default_factory=list)
+    """The next answers wait in their middle, each until its event is set."""
     tag: str = '"one"'
     status: int = 0
     says_length: bool = True
@@ -62,10 +64,13 @@ class Handler(BaseHTTPRequestHandler):
         if files.tag:
             self.send_header("ETag", files.tag)
         self.end_headers()
+        stop = files.stops.pop(0) if files.stops else None
         end = start + files.cut_after.pop(0) if files.cut_after else len(data)
         for begin in range(start, min(end, len(data)), 100_000):
             self.wfile.write(data[begin : min(begin + 100_000, end)])
             time.sleep(files.piece_s)
+            if stop is not None and 2 * begin >= len(data):
+                stop.wait()
         self.close_connection = True
 
     def log_message(self, format: str, *args: Any) -> None:

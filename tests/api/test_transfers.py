@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 import httpx
@@ -19,10 +20,13 @@ from fastapi import FastAPI
 from sqlalchemy import select
 
 from bench.soak.servers import free_port
+from cli.serve import _application
 from store.db import Database
 from store.files import input_key
+from store.integration_models import Transfer
 from store.leasing import input_files
 from store.models import Inspection, Upload
+from store.transfers import WantedFile
 from store.uploads import UploadFile
 from tests.api.conftest import ROOT, Backend, wait_until
 from tests.api.file_server import DATA, HERE, Files, files_served
@@ -56,6 +60,15 @@ class Two:
         with self.first.backend.db.read() as session:
             return list(session.scalars(select(Upload)))
 
+    def in_the_middle(self) -> bool:
+        return any(0 < row.offset < row.length for row in self.rows())
+
+    def leased_until(self) -> datetime:
+        with self.first.backend.db.read() as session:
+            until = session.scalars(select(Transfer)).one().lease_expires_at
+        assert until is not None
+        return until
+
     def leftovers(self) -> list[Path]:
         return list(self.first.backend.services.settings.folder("uploads").iterdir())
 
@@ -78,6 +91,15 @@ def two(
 
 
 @pytest.fixture
+def stop(files: Files) -> Iterator[threading.Event]:
+    """The first answer of the file server comes to its middle, and further once this is set."""
+    made = threading.Event()
+    files.stops = [made]
+    yield made
+    made.set()
+
+
+@pytest.fixture
 def breaks_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """The disk fails in the moment of the second piece, as nobody expects."""
     write, failed = UploadFile.write, []
@@ -91,24 +113,26 @@ def breaks_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(UploadFile, "write", fails)
 
 
-@pytest.mark.parametrize("two", [{"lease_s": 1.2, "heartbeat_s": 0.1}], indirect=True)
-def test_every_process_knows_how_far_a_transfer_is(two: Two, files: Files) -> None:
-    files.piece_s = 0.06  # longer than a lease, which is renewed
+@pytest.mark.parametrize("two", [{"heartbeat_s": 0.1}], indirect=True)
+def test_every_process_knows_how_far_a_transfer_is(two: Two, files: Files, stop: threading.Event) -> None:
     assert two.first.post(video_url=files.url()).status_code == 409
+    wait_until(two.in_the_middle)
+    until = two.leased_until()
+    wait_until(lambda: two.leased_until() > until)  # also when no byte comes
     two.second.app.state.bladeatlas.fetches.wait_s = 0.1
-    wait_until(lambda: len(two.rows()) == 1 and two.rows()[0].offset >= MIB)
     told = two.second.post(video_url=files.url())
     assert (told.status_code, told.json()["code"]) == (409, "fetching")
     assert told.json()["detail"].startswith(f"{two.rows()[0].offset} of {len(DATA)} bytes")
+    stop.set()
     assert kept(two.second, two.second.post_until(video_url=files.url())) == [DATA]
     assert len(files.asked) == 1
     assert (uploads_left(two.first), two.leftovers()) == (0, [])
 
 
-def test_what_cannot_be_had_is_told_by_any_process_and_once(two: Two, files: Files) -> None:
-    files.piece_s = 0.01
+def test_what_cannot_be_had_is_told_by_any_process_and_once(two: Two, files: Files, stop: threading.Event) -> None:
     wrong = {"video_url": files.url(), "video_sha256": "0" * 64}
     assert two.first.post(**wrong).status_code == 409
+    stop.set()
     assert refused(two.second.post_until(**wrong)) == (422, "checksum", "/video_url")
     assert len(files.asked) == 1
     assert refused(two.second.post_until(**wrong)) == (422, "checksum", "/video_url")
@@ -147,30 +171,43 @@ def test_addresses_are_checked_again_when_a_transfer_is_taken_over(two: Two, fil
 @pytest.mark.parametrize("two", [{**SHORT, "max_open_uploads_per_owner": 2}], indirect=True)
 @pytest.mark.usefixtures("breaks_once")
 def test_who_has_no_place_for_a_transfer_now_refuses_none_that_was_begun(two: Two, files: Files) -> None:
+    stop = threading.Event()
     two.first.app.state.bladeatlas.fetches.wait_s = 20.0
     assert two.first.post(video_url=files.url()).status_code == 500
     fetches = two.second.app.state.bladeatlas.fetches
-    fetches.wait_s, files.piece_s, files.content["/slow"] = 0.1, 0.5, DATA[:MIB]
+    fetches.wait_s, files.stops, files.content["/slow"] = 0.1, [stop], DATA[:MIB]
     assert two.second.post(video_url=files.url("/slow")).json()["code"] == "fetching"
     time.sleep(SHORT["lease_s"])
     assert two.second.post(video_url=files.url()).json()["code"] == "fetching"
     assert two.second.post(video_url=files.url("/notes")).json()["code"] == "too_many_fetches_of_owner"
     assert [path for path, _ in files.asked] == ["/video", "/slow"]
-    fetches.wait_s, files.piece_s = 20.0, 0.0
+    stop.set()
+    fetches.wait_s = 20.0
     assert kept(two.second, two.second.post_until(video_url=files.url())) == [DATA]
 
 
 @pytest.mark.parametrize("two", [{"lease_s": 0.4, "heartbeat_s": 60.0}], indirect=True)
-def test_who_stands_still_loses_the_lease_and_writes_nothing_more(two: Two, files: Files) -> None:
-    files.piece_s = 0.06
+def test_who_stands_still_loses_the_lease_and_writes_nothing_more(
+    two: Two, files: Files, stop: threading.Event
+) -> None:
     assert two.first.post(video_url=files.url()).status_code == 409
-    wait_until(lambda: any(row.offset for row in two.rows()))
-    files.piece_s = 0.02
+    wait_until(two.in_the_middle)
     assert kept(two.second, two.second.post_until(video_url=files.url())) == [DATA]
+    stop.set()
     wait_until(lambda: not two.first.app.state.bladeatlas.fetches._under_way)
     assert [wanted for _, wanted in files.asked] == ["", ""], "the first had its file still open"
     assert sorted(row.offset == row.length for row in two.rows()) == [False, True]
     assert (uploads_left(two.first), two.leftovers()) == (0, [])
+
+
+def test_a_server_that_starts_again_frees_what_it_was_fetching(backend: Backend) -> None:
+    services, wanted = backend.services, [WantedFile("https://files.test/", None, 1)]
+    for holder in ("me", "another"):
+        assert services.transfers.begin(holder, "default", wanted, holder) is not None
+    app = _application(services.settings, services.db, services.graph, services.wake, "me")
+    assert app.state.bladeatlas.services.name == "me"
+    free = {name: view.free for name in ("me", "another") if (view := services.transfers.find(name))}
+    assert free == {"me": True, "another": False}
 
 
 @dataclass
@@ -229,10 +266,13 @@ def _answers(address: str) -> bool:
 
 
 @pytest.mark.deployment
-def test_another_process_completes_what_a_killed_one_was_fetching(fleet: Fleet, files: Files) -> None:
+def test_another_process_completes_what_a_killed_one_was_fetching(
+    fleet: Fleet, files: Files, stop: threading.Event
+) -> None:
     (first, process), (second, _) = fleet.servers
-    files.content["/video"], files.piece_s = DATA * 2, 0.04
-    body = {"video_url": files.url(host=HERE), "video_sha256": hashlib.sha256(DATA * 2).hexdigest()}
+    video, files.piece_s = DATA * 4, 0.03
+    files.content["/video"] = video
+    body = {"video_url": files.url(host=HERE), "video_sha256": hashlib.sha256(video).hexdigest()}
     killer = threading.Thread(target=lambda: (wait_until(fleet.has_a_part), process.kill()))
     killer.start()
     with pytest.raises(httpx.TransportError):
@@ -240,7 +280,7 @@ def test_another_process_completes_what_a_killed_one_was_fetching(fleet: Fleet, 
     killer.join()
     process.wait()
     came = fleet.upload().offset
-    assert 0 < came < len(DATA) * 2
+    assert 0 < came < len(video)
     files.piece_s = 0.0
     answer = httpx.post(f"{second}/v1/inspections", json=body, timeout=60)
     assert answer.status_code == 202, answer.text
@@ -252,4 +292,4 @@ def test_another_process_completes_what_a_killed_one_was_fetching(fleet: Fleet, 
         (row,) = session.scalars(select(Inspection))
         (video,) = input_files(row)
     assert row.id == answer.json()["id"]
-    assert (fleet.folder / "artifacts" / input_key(video.video_sha256, "video")).read_bytes() == DATA * 2
+    assert (fleet.folder / "artifacts" / input_key(video.video_sha256, "video")).read_bytes() == video

@@ -90,6 +90,15 @@ def test_a_transfer_is_begun_once_and_leased_to_one(transfers: Transfers) -> Non
     assert transfers.find("another") is None
 
 
+def test_the_leases_of_a_holder_that_is_gone_are_free_at_once(transfers: Transfers) -> None:
+    begun(transfers)
+    transfers.take_over("second")
+    assert not found(transfers).free
+    transfers.take_over("first")
+    assert found(transfers).free
+    assert transfers.take("one", "first") is not None
+
+
 def test_who_lost_the_lease_writes_nothing(transfers: Transfers, uploads: Uploads) -> None:
     old = begun(transfers)
     put_upload(transfers, uploads, old, "a")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path
 
@@ -182,29 +181,29 @@ def test_what_is_over_ends_with_its_uploads_and_what_is_under_way_does_not(
         assert session.scalars(select(TransferFile)).all() == []
 
 
-Ending = Callable[[Transfers, TransferLease], object]
-
-
 @pytest.mark.parametrize(
-    ("ends", "seconds", "forgotten"),
-    [
-        (Transfers.finish, KEPT_S - 60, 0),
-        (Transfers.finish, KEPT_S + 1, 1),
-        (lambda *_: None, KEPT_S + 1, 1),
-        (lambda transfers, lease: let_pass(transfers, KEPT_S + 1) or transfers.renew(lease), 0, 0),
-    ],
-    ids=["just fetched", "not taken up", "its holder died", "still being fetched"],
+    ("fetched", "seconds", "forgotten"),
+    [(True, KEPT_S - 60, 0), (True, KEPT_S + 1, 1), (False, KEPT_S + 1, 1)],
+    ids=["just fetched", "not taken up", "its holder died"],
 )
 def test_what_nobody_asks_for_again_ends(
-    transfers: Transfers, uploads: Uploads, ends: Ending, seconds: float, forgotten: int
+    transfers: Transfers, uploads: Uploads, fetched: bool, seconds: float, forgotten: int
 ) -> None:
     lease = begun(transfers)
     put_upload(transfers, uploads, lease, "a")
-    ends(transfers, lease)
+    assert not fetched or transfers.finish(lease)
     let_pass(transfers, seconds)
     assert Retention(transfers.db).expire_transfers() == forgotten
     assert len(living(transfers)) == 1 - forgotten
     assert (transfers.find("one") is None) == bool(forgotten)
+
+
+def test_what_is_still_fetched_goes_on_though_nobody_asks(transfers: Transfers) -> None:
+    lease = begun(transfers)
+    let_pass(transfers, KEPT_S + 1)
+    assert transfers.renew(lease)
+    assert Retention(transfers.db).expire_transfers() == 0
+    assert transfers.finish(lease)
 
 
 def test_asking_again_keeps_it_and_comes_too_late_once(transfers: Transfers, uploads: Uploads) -> None:

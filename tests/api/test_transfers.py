@@ -102,11 +102,11 @@ def stop(files: Files) -> Iterator[threading.Event]:
 @pytest.fixture
 def breaks_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """The disk fails in the moment of the second piece, as nobody expects."""
-    write, failed = UploadFile.write, []
+    write, failed = UploadFile.write, threading.Event()
 
     def fails(file: UploadFile, data: bytes) -> None:
-        if file.offset and not failed:
-            failed.append(1)
+        if file.offset and not failed.is_set():
+            failed.set()
             raise OSError(errno.EIO, "the disk fails")
         write(file, data)
 
@@ -273,7 +273,12 @@ def test_another_process_completes_what_a_killed_one_was_fetching(
     video, files.piece_s = DATA * 4, 0.03
     files.content["/video"] = video
     body = {"video_url": files.url(host=HERE), "video_sha256": hashlib.sha256(video).hexdigest()}
-    killer = threading.Thread(target=lambda: (wait_until(fleet.has_a_part), process.kill()))
+
+    def kill() -> None:
+        wait_until(fleet.has_a_part)
+        process.kill()
+
+    killer = threading.Thread(target=kill)
     killer.start()
     with pytest.raises(httpx.TransportError):
         httpx.post(f"{first}/v1/inspections", json=body, timeout=60)

@@ -1,8 +1,8 @@
 """Inputs that a request names by URL: fetched beside the request, which may be sent again until they are there.
 
 No thread and no connection of the request is held while files come in: it waits some seconds, is told that it is under
-way, and takes up the same transfer when it is repeated. A fetched file is an upload of its account, with the limits of
-one, and is removed once the inspection has it.
+way, and takes up the same transfer when it is repeated, whichever process of the API it comes to. A fetched file is an
+upload of its account, with the limits of one, and is removed once the inspection has it.
 """
 
 from __future__ import annotations
@@ -13,69 +13,64 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
+from typing import TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
-from api.limits import require_space
 from api.problems import FieldError, Refused, status_of
 from api.services import Services
 from api.threads import in_daemon_thread
+from api.transferring import Fetcher
 from core.errors import BadInput, BladeAtlasError
 from core.fingerprint import digest_of
 from store.admission import LimitReached
-from store.bucket_inputs import SCHEME, AllowedBuckets, BucketInputs
-from store.downloads import AllowedHosts, Downloads, Source
+from store.bucket_inputs import AllowedBuckets, BucketInputs
+from store.downloads import AllowedHosts, Downloads
+from store.integration_models import TransferState
 from store.outbound import Outbound
-from store.uploads import Digests, UploadFile, UploadView
+from store.transfers import TransferView, WantedFile
+from store.uploads import Digests
+
+T = TypeVar("T")
 
 WAIT_S = 20.0
 """A request waits so long for its files before it is told to come back."""
-_KEPT_S = 900.0
-"""What nobody asked for again is given up after this."""
-_COMMIT_BYTES = 64 << 20
+_LOOK_S = 0.5
+"""How often it looks how far another process is."""
 _LATER = "5"
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """A file to fetch."""
+class Wanted(WantedFile):
+    """A file to fetch, and where the request names it."""
 
     pointer: str
     """JSON pointer to the URL in the request."""
-    url: str
-    sha256: str | None
-    """What it must hash to."""
-    most_bytes: int
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Fetch:
-    """The files of one request on their way."""
+    """A transfer that this process carries out."""
 
     owner: str
-    task: asyncio.Task[list[str]]
-    sizes: list[int] = field(default_factory=list)
-    came: int = 0
-    asked_at: float = 0.0
+    task: asyncio.Task[None]
 
 
 @dataclass
 class Fetches:
-    """All transfers of one process."""
+    """The transfers that one process carries out; what they are lies in the database."""
 
     services: Services
     digests: Digests
     wait_s: float = WAIT_S
-    clock: Callable[[], float] = time.monotonic
-    downloads: Downloads = field(init=False)
-    buckets: BucketInputs = field(init=False)
+    fetcher: Fetcher = field(init=False)
     _under_way: dict[str, _Fetch] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         settings = self.services.settings
-        outbound = Outbound(settings.allowed_networks())
-        self.downloads = Downloads(outbound, AllowedHosts.parse(settings.input_hosts))
-        self.buckets = BucketInputs(AllowedBuckets.parse(settings.input_buckets), settings.storage_options())
+        downloads = Downloads(Outbound(settings.allowed_networks()), AllowedHosts.parse(settings.input_hosts))
+        buckets = BucketInputs(AllowedBuckets.parse(settings.input_buckets), settings.storage_options())
+        self.fetcher = Fetcher(self.services, self.digests, downloads, buckets)
 
     async def uploads(self, owner: str, wanted: Sequence[Wanted]) -> list[str]:
         """Ids of uploads with these files, in their order; `done` follows once they are not needed any more.
@@ -87,43 +82,63 @@ class Fetches:
         """
         for one in wanted:
             try:
-                self._source(one.url).require(one.url)  # in vain nobody's place is taken
+                self.fetcher.source(one.url).require(one.url)  # in vain nobody's place is taken
             except BadInput as error:
                 raise _refused(one, error) from None
-        self._delete_old()
-        name = _name(owner, wanted)
-        fetch = self._under_way.get(name)
-        if fetch is None:
-            self._require_place(owner)
-            fetch = _Fetch(owner, asyncio.create_task(self._fetch_all(name, owner, wanted)))
-            self._under_way[name] = fetch
-        fetch.asked_at = self.clock()
-        done, _ = await asyncio.wait((fetch.task,), timeout=self.wait_s)
-        if not done:
-            detail = f"{fetch.came} of {sum(fetch.sizes)} bytes are here; send the same request again to go on"
-            headers = {"Retry-After": _LATER}
-            raise Refused(HTTPStatus.CONFLICT, "fetching", detail, headers=headers, retryable=True)
-        if fetch.task.exception() is not None and self._under_way.get(name) is fetch:
-            del self._under_way[name]  # who asks again begins anew
-        return fetch.task.result()
+        name, until = _name(owner, wanted), time.monotonic() + self.wait_s
+        await run_in_threadpool(self._remove, partial(self.services.transfers.ask, name))
+        while True:
+            view = await run_in_threadpool(self._look, name, owner)
+            if view is not None and view.state == TransferState.FETCHED:
+                return list(view.uploads)
+            if view is not None and view.error is not None:
+                await run_in_threadpool(self._remove, partial(self.services.transfers.end, name))
+                raise _refused(wanted[view.failed], view.error)  # who asks again begins anew
+            fetch = self._fetch_of(name, owner, wanted, view)  # before the time is looked at: no request is for nothing
+            left = until - time.monotonic()
+            if left <= 0:
+                raise _under_way(view)
+            await _something_new(fetch, left)
 
     async def done(self, owner: str, wanted: Sequence[Wanted]) -> None:
         """The files of this request were taken over: their uploads end."""
-        fetch = self._under_way.pop(_name(owner, wanted), None)
-        if fetch is not None:
-            await run_in_threadpool(partial(self._remove, fetch.task.result()))
+        await run_in_threadpool(self._remove, partial(self.services.transfers.end, _name(owner, wanted)))
 
-    def _source(self, url: str) -> Source:
-        return self.buckets if url.startswith(SCHEME) else self.downloads
+    def _fetch_of(self, name: str, owner: str, wanted: Sequence[Wanted], view: TransferView | None) -> _Fetch | None:
+        """The transfer as this process carries it out, also when nobody does yet; None when it is another's.
 
-    def _delete_old(self) -> None:
-        """Drop files that were not used soon: at their URL there may be others by now."""
-        for name, fetch in list(self._under_way.items()):
-            if fetch.task.done() and self.clock() - fetch.asked_at > _KEPT_S:
-                del self._under_way[name]  # its uploads end by their own time
+        Raises:
+            LimitReached: it is new, and as many are under way as may be.
+        """
+        fetch = self._under_way.get(name)
+        if fetch is not None or not (view is None or view.free):
+            return fetch
+        full = self._full(owner)
+        if full is None:
+            task = asyncio.create_task(self._run(name, owner, wanted, known=view is not None))
+            fetch = self._under_way[name] = _Fetch(owner, task)
+        elif view is None:
+            raise full
+        return fetch
 
-    def _require_place(self, owner: str) -> None:
-        running = [fetch.owner for fetch in self._under_way.values() if not fetch.task.done()]
+    async def _run(self, name: str, owner: str, wanted: Sequence[Wanted], *, known: bool) -> None:
+        """Carry out a transfer, one that is known under a new lease."""
+        transfers = self.services.transfers
+        take = transfers.take if known else partial(transfers.begin, owner=owner, files=wanted)
+
+        def run() -> None:
+            lease = take(name, holder=self.services.name)
+            if lease is not None:
+                self.fetcher.run(lease)
+
+        try:
+            await in_daemon_thread(run)
+        finally:
+            del self._under_way[name]
+
+    def _full(self, owner: str) -> LimitReached | None:
+        """Why this process carries out no more transfers now; None when it does."""
+        running = [fetch.owner for fetch in self._under_way.values()]
         settings = self.services.settings
         for used, allowed, name, suffix in (
             (len(running), settings.max_fetches, "max_fetches", ""),
@@ -131,96 +146,44 @@ class Fetches:
         ):
             if used >= allowed:
                 message = f"{used} requests fetch inputs already, and {name} is {allowed}; try again later"
-                raise LimitReached(message, code=f"too_many_fetches{suffix}", where=name)
+                return LimitReached(message, code=f"too_many_fetches{suffix}", where=name)
+        return None
 
-    async def _fetch_all(self, name: str, owner: str, wanted: Sequence[Wanted]) -> list[str]:
-        made: list[str] = []
-        try:
-            for one in wanted:
-                await in_daemon_thread(partial(self._fetch, name, owner, one, made))
-        except BaseException:
-            self._remove(made)
-            raise
-        return made
+    def _look(self, name: str, owner: str) -> TransferView | None:
+        """How far a transfer is; one whose files are gone, or lie on another machine, ends, and there is none."""
+        view, uploads = self.services.transfers.find(name), self.services.uploads
+        if view is None or view.state != TransferState.FETCHED:
+            return view
+        found = [uploads.find(upload_id, owner) for upload_id in view.uploads]
+        if all(one is not None and not one.removed and one.complete for one in found):
+            return view
+        self._remove(partial(self.services.transfers.end, name))
+        return None
 
-    def _fetch(self, name: str, owner: str, one: Wanted, made: list[str]) -> None:
-        """Fetch one file into an upload, whose id is added to `made`."""
-        seconds = self.services.settings.fetch_seconds
-        sink: _UploadSink | None = None
-
-        def begin(size: int) -> _UploadSink:
-            nonlocal sink
-            require_space(self.services)
-            admit = partial(self.services.admission.admit_upload, owner=owner, size=size)
-            upload = self.services.uploads.create(owner, size, {}, admit)
-            made.append(upload.id)
-            fetch = self._under_way[name]
-            fetch.sizes.append(size)
-            sink = _UploadSink(self.services, upload, self.digests, fetch)
-            return sink
-
-        try:
-            self._source(one.url).fetch(one.url, one.most_bytes, seconds, begin)
-            sha256 = sink.finish() if sink is not None else None
-        except BladeAtlasError as error:
-            raise _refused(one, error) from None
-        finally:
-            if sink is not None:
-                sink.close()
-        if one.sha256 is not None and sha256 != one.sha256:
-            raise _refused(one, BadInput(f"the file hashes to {sha256}", code="checksum", where="sha256"))
-
-    def _remove(self, uploads: Sequence[str]) -> None:
-        for upload_id in uploads:
+    def _remove(self, end: Callable[[], Sequence[str]]) -> None:
+        """Remove the files of the uploads that a change in the database ended."""
+        for upload_id in end():
             self.services.uploads.remove(upload_id)
 
 
-class _UploadSink:
-    """Writes what comes into an upload."""
-
-    def __init__(self, services: Services, upload: UploadView, digests: Digests, fetch: _Fetch) -> None:
-        self._services, self._upload, self._fetch = services, upload, fetch
-        self._before = fetch.came
-        self._committed = 0
-        self._file = UploadFile(services.uploads.path(upload.id), digests)
-        self._file.resume(0)
-
-    @property
-    def offset(self) -> int:
-        return self._file.offset
-
-    def write(self, data: bytes) -> None:
-        self._file.write(data)
-        self._fetch.came = self._before + self._file.offset
-        if self._file.offset - self._committed >= _COMMIT_BYTES:
-            self._commit(None)
-            require_space(self._services)
-
-    def restart(self) -> None:
-        self._commit_offset(0, None)
-        self._file.resume(0)
-
-    def finish(self) -> str | None:
-        """All is there: note its hash, and return it."""
-        sha256 = self._file.sha256()
-        self._commit(sha256)
-        return sha256
-
-    def close(self) -> None:
-        self._file.close()
-
-    def _commit(self, sha256: str | None) -> None:
-        self._file.sync()
-        self._commit_offset(self._file.offset, sha256)
-
-    def _commit_offset(self, offset: int, sha256: str | None) -> None:
-        if not self._services.uploads.commit(self._upload.id, offset, sha256):
-            raise BadInput("the upload of the file was removed", code="gone", where="url")
-        self._committed = offset
+async def _something_new(fetch: _Fetch | None, seconds: float) -> None:
+    """Wait until a transfer is over, or until it is worth to look how far another process is."""
+    if fetch is None:
+        await asyncio.sleep(min(_LOOK_S, seconds))
+        return
+    done, _ = await asyncio.wait((fetch.task,), timeout=seconds)
+    if done:
+        fetch.task.result()  # raises what nobody expects
 
 
 def _name(owner: str, wanted: Sequence[Wanted]) -> str:
     return digest_of({"owner": owner, "files": [[one.url, one.sha256] for one in wanted]})
+
+
+def _under_way(view: TransferView | None) -> Refused:
+    came, size = (0, 0) if view is None else (view.came, view.size)
+    detail = f"{came} of {size} bytes are here; send the same request again to go on"
+    return Refused(HTTPStatus.CONFLICT, "fetching", detail, headers={"Retry-After": _LATER}, retryable=True)
 
 
 def _refused(one: Wanted, error: BladeAtlasError) -> BladeAtlasError | Refused:

@@ -121,10 +121,10 @@ class Recorded(BaseModel):
         found = []
         if self.video_url is not None:
             most = settings.max_upload_bytes
-            found.append(Wanted(f"{pointer}/video_url", self.video_url, self.video_sha256, most))
+            found.append(Wanted(self.video_url, self.video_sha256, most, f"{pointer}/video_url"))
         if self.annotations_url is not None:
             most = settings.max_annotations_bytes
-            found.append(Wanted(f"{pointer}/annotations_url", self.annotations_url, self.annotations_sha256, most))
+            found.append(Wanted(self.annotations_url, self.annotations_sha256, most, f"{pointer}/annotations_url"))
         return found
 
     def fetched(self, pointer: str, uploads: Mapping[str, str]) -> Recorded:

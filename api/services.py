@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from store.account_models import DEFAULT_ACCOUNT
 from store.admission import Admission
@@ -12,9 +12,11 @@ from store.factory import open_artifacts, open_database
 from store.files import ArtifactStore
 from store.graph import CORE_GRAPH, Graph, load_graph
 from store.inspections import Inspections
+from store.leasing import unique_name
 from store.logs import InspectionLogs
 from store.plan import Plan
 from store.settings import DeploymentSettings
+from store.transfers import Transfers
 from store.uploads import Uploads
 
 
@@ -31,6 +33,8 @@ class Services:
     wake: Callable[[str], None]
     """Called with an inspection's id after a commit. It never raises: the sweeper repairs what is lost."""
     graph: Graph = CORE_GRAPH
+    name: str = field(default_factory=unique_name)
+    """Holder of its leases; unique, or kept over restarts by whoever can vouch that the old process is gone."""
 
     @property
     def inspections(self) -> Inspections:
@@ -46,6 +50,11 @@ class Services:
     def uploads(self) -> Uploads:
         """Resumable uploads; their bytes lie on this machine until an inspection takes them."""
         return Uploads(self.db, self.settings.folder("uploads"), self.settings.upload_hours)
+
+    @property
+    def transfers(self) -> Transfers:
+        """Inputs that are fetched by URL."""
+        return Transfers(self.db, self.settings.lease_s)
 
     @property
     def admission(self) -> Admission:
@@ -74,10 +83,11 @@ def make_services(
     *,
     wake: Callable[[str], None],
     graph: Graph = CORE_GRAPH,
+    name: str = "",
 ) -> Services:
     """Services over a database and an artifact store that are open already."""
     settings.folder("uploads").mkdir(parents=True, exist_ok=True)
-    return Services(settings, db, artifacts, _results(settings), wake, graph)
+    return Services(settings, db, artifacts, _results(settings), wake, graph, name or unique_name())
 
 
 def services_from(settings: DeploymentSettings) -> Services:

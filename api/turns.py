@@ -87,7 +87,7 @@ class Turns:
                 self._leave(owner, mine)
             if not isinstance(error, TimeoutError):
                 raise
-            detail = f"no turn came within {self.wait_s} s (probe_wait_seconds); try again later"
+            detail = f"no turn came within {self.wait_s:g} s (probe_wait_seconds); try again later"
             raise _refused(HTTPStatus.SERVICE_UNAVAILABLE, "probe_wait", detail) from None
 
     def _begin(self, owner: str) -> None:

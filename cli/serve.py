@@ -55,7 +55,7 @@ def command(parsed: argparse.Namespace) -> int:
             graph = load_graph(settings.graph)
             with ExitStack() as running:
                 wake = _background(running, settings, database, graph, identity, parsed.workers)
-                application = _application(settings, database, graph, wake)
+                application = _application(settings, database, graph, wake, identity)
                 _listen(application, settings, parsed.host, parsed.port)
         finally:
             database.close()
@@ -70,10 +70,13 @@ def _prefix(text: str) -> str:
 
 
 def _application(
-    settings: DeploymentSettings, database: Database, graph: Graph, wake: Callable[[str], None]
+    settings: DeploymentSettings, database: Database, graph: Graph, wake: Callable[[str], None], identity: str
 ) -> FastAPI:
     """The API over these services; `wake` is called with an inspection's id after its commit."""
-    return create_app(make_services(settings, database, open_artifacts(settings), wake=wake, graph=graph))
+    services = make_services(settings, database, open_artifacts(settings), wake=wake, graph=graph, name=identity)
+    # The lock on the folder says that the process which fetched under this name is gone.
+    services.transfers.take_over(identity)
+    return create_app(services)
 
 
 @contextmanager

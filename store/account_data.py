@@ -17,7 +17,7 @@ from store.accounts import Accounts
 from store.audit import AuditFilter, AuditLog
 from store.db import Database
 from store.inspections import mark_deleted
-from store.integration_models import InspectionEvent, MetadataEntry
+from store.integration_models import InspectionEvent, MetadataEntry, Transfer
 from store.keys import Keys
 from store.leasing import input_files, metadata_of
 from store.models import ACTIVE_INSPECTION, Artifact, IdempotencyKey, Inspection, Upload
@@ -96,6 +96,7 @@ class AccountData:
             session.execute(keys.values(revoked_at=now))
             uploads = update(Upload).where(Upload.owner == self.account_id, Upload.removed_at.is_(None))
             session.execute(uploads.values(removed_at=now, upload_metadata={}))
+            session.execute(delete(Transfer).where(Transfer.owner == self.account_id))  # its lease ends with it
             session.execute(delete(IdempotencyKey).where(IdempotencyKey.owner == self.account_id))
         had: list[str] = []
         while rows := self._inspections():

@@ -15,7 +15,7 @@ import fsspec
 from tenacity import Retrying, retry_if_exception_type, stop_after_attempt
 
 from core.errors import BadInput
-from store.downloads import TRIES, Sink, changed, too_large, took_too_long
+from store.downloads import MAX_TAG, TRIES, Begun, Sink, changed, too_large, took_too_long
 from store.outbound import MAX_URL, Unreachable
 
 T = TypeVar("T")
@@ -73,8 +73,10 @@ class BucketInputs:
         """Pass a URL that may be fetched; see `AllowedBuckets.place`."""
         self.buckets.place(url)
 
-    def fetch(self, url: str, most_bytes: int, seconds: float, begin: Callable[[int], Sink]) -> None:
-        """Fetch a file as a whole, as `store.downloads.Downloads.fetch` does.
+    def fetch(
+        self, url: str, most_bytes: int, seconds: float, begin: Callable[[int, str], Sink], begun: Begun | None = None
+    ) -> None:
+        """Fetch a file as a whole, or what is missing of it, as `store.downloads.Downloads.fetch` does.
 
         Raises:
             BadInput: it may not be fetched from there, is not there or may not be read (`fetch_refused`), is too large
@@ -86,7 +88,7 @@ class BucketInputs:
         size, tag = self._again(until, lambda: _identity(files, place))
         if size > most_bytes:
             raise too_large(size, most_bytes)
-        sink = begin(size)
+        sink = begin(size, tag) if begun is None else _resumed(begun, size, tag)
         while sink.offset < size:
             end = min(sink.offset + _PIECE, size)
             data = self._again(until, lambda end=end: files.cat_file(place, start=sink.offset, end=end))  # type: ignore[misc]
@@ -125,7 +127,17 @@ def _identity(files: Any, place: str) -> tuple[int, str]:
     told = files.info(place, refresh=True)
     if told["type"] != "file":
         raise FileNotFoundError(place)
-    return int(told["size"]), str(told.get("ETag", ""))
+    tag = str(told.get("ETag", ""))
+    return int(told["size"]), tag if len(tag) <= MAX_TAG else ""
+
+
+def _resumed(begun: Begun, size: int, tag: str) -> Sink:
+    """What takes the rest of a file; all of it when it is not surely the one that was begun."""
+    if size != begun.length:
+        raise changed()
+    if not tag or tag != begun.tag:
+        begun.sink.restart(tag)
+    return begun.sink
 
 
 @contextmanager

@@ -33,6 +33,8 @@ _AGAIN = (
     *(HTTPStatus.TOO_MANY_REQUESTS, HTTPStatus.BAD_GATEWAY),
     *(HTTPStatus.SERVICE_UNAVAILABLE, HTTPStatus.GATEWAY_TIMEOUT),
 )
+MAX_TAG = 256
+"""Characters of a tag that is used; a file with a longer one is fetched anew after a cut."""
 _RANGE = re.compile(r"bytes (\d{1,18})-\d{1,18}/(\d{1,18})")
 
 
@@ -48,9 +50,19 @@ class Sink(Protocol):
         """Take more."""
         ...
 
-    def restart(self) -> None:
-        """Delete all of them."""
+    def restart(self, tag: str) -> None:
+        """Delete all of them; what comes now is of the file with this tag."""
         ...
+
+
+@dataclass(frozen=True)
+class Begun:
+    """A file of which an earlier transfer brought a part."""
+
+    sink: Sink
+    length: int
+    tag: str
+    """What the file had when its first byte came; empty: there was none, and it begins anew."""
 
 
 class Source(Protocol):
@@ -60,8 +72,14 @@ class Source(Protocol):
         """Pass a URL that may be fetched; BadInput otherwise, before anything is asked of anybody."""
         ...
 
-    def fetch(self, url: str, most_bytes: int, seconds: float, begin: Callable[[int], Sink]) -> None:
-        """Fetch a file as a whole; `begin` gives what takes its bytes once its size is known and allowed."""
+    def fetch(
+        self, url: str, most_bytes: int, seconds: float, begin: Callable[[int, str], Sink], begun: Begun | None = None
+    ) -> None:
+        """Fetch a file as a whole, or what is missing of one that was begun.
+
+        `begin` gives what takes its bytes once its size is known and allowed; it is told size and tag. It is not
+        called for one that was begun.
+        """
         ...
 
 
@@ -109,13 +127,16 @@ class Downloads:
         """Pass a URL that may be fetched; see `AllowedHosts.require`."""
         self.hosts.require(url)
 
-    def fetch(self, url: str, most_bytes: int, seconds: float, begin: Callable[[int], Sink]) -> None:
-        """Fetch a file as a whole.
+    def fetch(
+        self, url: str, most_bytes: int, seconds: float, begin: Callable[[int, str], Sink], begun: Begun | None = None
+    ) -> None:
+        """Fetch a file as a whole, or what is missing of one that was begun.
 
         Args:
             most_bytes: of the file.
-            seconds: for all of it.
-            begin: called with its size once that is known and allowed; gives what takes the bytes.
+            seconds: for all that is fetched now.
+            begin: called with its size and tag once the size is known and allowed; gives what takes the bytes.
+            begun: what an earlier transfer has left.
 
         Raises:
             BadInput: it may not be fetched from there, is too large (`too_large`), of no known size (`no_length`), is
@@ -123,7 +144,10 @@ class Downloads:
                 (`fetch_timeout`).
             Unreachable: the server is away, or cuts the transfer again and again.
         """
-        _Transfer(self, url, most_bytes, time.monotonic() + seconds, begin).run()
+        transfer = _Transfer(self, url, most_bytes, time.monotonic() + seconds, begin)
+        if begun is not None:
+            transfer.sink, transfer.length, transfer.validator = begun.sink, begun.length, begun.tag
+        transfer.run()
 
 
 @dataclass
@@ -134,7 +158,7 @@ class _Transfer:
     url: str
     most_bytes: int
     until: float
-    begin: Callable[[int], Sink]
+    begin: Callable[[int, str], Sink]
     sink: Sink | None = None
     length: int = 0
     validator: str = ""
@@ -181,18 +205,19 @@ class _Transfer:
             raise Unreachable(f"the server of the file answers {answer.status}", where="url")
         if answer.status not in (HTTPStatus.OK, HTTPStatus.PARTIAL_CONTENT):
             raise BadInput(f"the server of the file answers {answer.status}", code="fetch_refused", where="url")
-        start, length = _extent(answer.status, headers)
+        (start, length), tag = _extent(answer.status, headers), _validator(headers)
         if self.sink is None:
             if length > self.most_bytes:
                 raise too_large(length, self.most_bytes)
-            self.length, self.sink = length, self.begin(length)
+            self.length, self.validator, self.sink = length, tag, self.begin(length, tag)
         elif length != self.length:
             raise changed()
-        self.validator = _validator(headers)
-        if start != self.sink.offset:  # the whole file again: there are no ranges, or it is not the same any more
+        other = not start and tag != self.validator
+        if start != self.sink.offset or other:  # the whole file again: no ranges, or it is not the same any more
             if start:
                 raise changed()
-            self.sink.restart()
+            self.sink.restart(tag)
+        self.validator = tag
         self._read(answer, self.sink)
 
     def _read(self, answer: httpcore.Response, sink: Sink) -> None:
@@ -228,7 +253,7 @@ def _extent(status: int, headers: Mapping[str, str]) -> tuple[int, int]:
 def _validator(headers: Mapping[str, str]) -> str:
     """What says that two answers are of the same file: a strong tag; without one it is fetched anew after a cut."""
     tag = headers.get("etag", "")
-    return tag if tag.startswith('"') else ""
+    return tag if tag.startswith('"') and len(tag) <= MAX_TAG else ""
 
 
 def too_large(size: int, most: int) -> BadInput:

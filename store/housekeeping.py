@@ -33,6 +33,7 @@ from store.models import (
 from store.publishing import artifact_prefix
 from store.review_models import ReviewEntry
 from store.tables import clear_rows
+from store.transfers import Transfers
 
 _IDEMPOTENCY_DAYS = 3
 _WORKER_DAYS = 1
@@ -148,6 +149,10 @@ class Retention:
             for upload in rows:
                 upload.removed_at = now
             return len(rows)
+
+    def expire_transfers(self) -> int:
+        """End what is fetched by URL and nobody asked for in time, its uploads too; returns how many of these."""
+        return Transfers(self.db).forget()
 
     def uploads_in_use(self) -> set[str]:
         """Ids of uploads whose file is needed."""

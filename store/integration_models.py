@@ -1,4 +1,7 @@
-"""Tables for the programs around the service: metadata of inspections, events that tell of their changes, webhooks."""
+"""Tables for the programs around the service.
+
+These are metadata of inspections, events that tell of their changes, webhooks, and inputs that are fetched by URL.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,8 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import ForeignKey, ForeignKeyConstraint, Index, String, UniqueConstraint
-from sqlalchemy.orm import Mapped, mapped_column
+from sqlalchemy import BigInteger, ForeignKey, ForeignKeyConstraint, Index, String, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from store.columns import Base, Choice
 
@@ -131,3 +134,57 @@ class WebhookDelivery(Base):
     """Of HTTP, of the last answer; None when there was none."""
     error: Mapped[str] = mapped_column(String(256), default="")
     """Why the last attempt failed."""
+
+
+class TransferState(StrEnum):
+    """How far the files of a request are that are fetched by URL."""
+
+    FETCHING = "fetching"
+    """Somebody fetches them, or will when the request is sent again."""
+    FETCHED = "fetched"
+    REFUSED = "refused"
+    """One of them cannot be had; its error is told to who asks next."""
+
+
+class Transfer(Base):
+    """The files of a request that are fetched by URL, with the lease of who fetches them; see `store.transfers`."""
+
+    __tablename__ = "transfers"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    """Made from account and files, so that the same request finds it again."""
+    owner: Mapped[str] = mapped_column(String(64), index=True)
+    state: Mapped[TransferState] = mapped_column(Choice(TransferState))
+    files: Mapped[list[TransferFile]] = relationship(
+        order_by="TransferFile.number", cascade="all, delete-orphan", passive_deletes=True, lazy="selectin"
+    )
+    holder: Mapped[str | None] = mapped_column(String(128))
+    """The process that fetches."""
+    fence: Mapped[int]
+    """Grows with every lease; only the holder of the newest may write what came of it."""
+    lease_expires_at: Mapped[datetime | None]
+    created_at: Mapped[datetime]
+    asked_at: Mapped[datetime]
+    """When the request was sent last."""
+    failed: Mapped[int | None]
+    """Number of the file that cannot be had."""
+    error: Mapped[dict[str, Any] | None]
+
+
+class TransferFile(Base):
+    """One of these files. Its bytes are those of an upload."""
+
+    __tablename__ = "transfer_files"
+
+    transfer_id: Mapped[str] = mapped_column(
+        String(64), ForeignKey("transfers.id", ondelete="CASCADE"), primary_key=True
+    )
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    url: Mapped[str] = mapped_column(String(2000))
+    sha256: Mapped[str | None] = mapped_column(String(64))
+    """What it must hash to, where the request says so."""
+    most_bytes: Mapped[int] = mapped_column(BigInteger)
+    upload_id: Mapped[str | None] = mapped_column(String(64))
+    """None until its size is known."""
+    tag: Mapped[str] = mapped_column(String(256))
+    """The file's ``ETag`` when it is a strong one: with it a transfer goes on where it was. Else empty."""

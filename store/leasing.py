@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import platform
+import uuid
 from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import PurePosixPath
@@ -26,6 +29,11 @@ def lock_inspection(session: Session, inspection_id: str) -> Inspection:
     if inspection is None:
         raise BadInput(f"there is no inspection '{inspection_id}'", where="inspection")
     return inspection
+
+
+def unique_name() -> str:
+    """A name for the holder of leases that no other process has or had."""
+    return f"{platform.node()[:64]}-{os.getpid()}-{uuid.uuid4().hex[:6]}"
 
 
 def changed(session: Session, statement: Update) -> bool:

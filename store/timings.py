@@ -12,11 +12,13 @@ from dataclasses import dataclass
 
 from sqlalchemy import select
 
+from core.products.contract import read_product
+from core.products.front import FramesProduct
 from core.stage_specs import USUAL_CORES, USUAL_FRAMES, StageSpec
 from core.states import InspectionState, StageState, TaskState
 from store.db import Database
 from store.graph import Graph
-from store.models import Inspection, Task
+from store.models import ACTIVE_INSPECTION, Inspection, Task
 from store.status import StageStatus
 
 Interval = tuple[float, float]
@@ -34,8 +36,8 @@ _PUBLISHED_S = 5.0
 """Until the files of a plan that is over can be fetched, at most."""
 _FEW_FRAMES = 24
 """A video whose frames are not counted yet has at least so many; the settings say how many at most."""
-_FRAMES_TASK, _FRAMES_FACT = "frames", "n_frames"
-"""The task after which the number of frames is known, and its name among the facts of it."""
+_FRAMES = "frames"
+"""The task after which the number of frames is known."""
 
 
 @dataclass(frozen=True)
@@ -137,11 +139,16 @@ def _scaled(interval: Interval, factor: float) -> Interval:
 
 
 def expected_frames(db: Database, inspection: Inspection) -> Interval:
-    """How many frames an inspection has: counted, or as its settings bound it."""
-    query = select(Task.facts).where(Task.inspection_id == inspection.id, Task.key == _FRAMES_TASK)
-    with db.read() as session:
-        counted = (session.scalar(query) or {}).get(_FRAMES_FACT)
-    if counted is not None:
-        return (float(counted), float(counted))
+    """How many frames an inspection has: counted, or as its settings bound it.
+
+    For one that is over the database is not asked: no time is left that the number would tell.
+    """
+    if inspection.state in ACTIVE_INSPECTION:
+        query = select(Task.facts).where(Task.inspection_id == inspection.id, Task.key == _FRAMES)
+        with db.read() as session:
+            facts = session.scalar(query)
+        if facts:
+            counted = float(read_product(FramesProduct, facts, _FRAMES).n_frames)
+            return (counted, counted)
     most = float(inspection.settings["frames"]["max_count"])
     return (min(float(_FEW_FRAMES), most), most)

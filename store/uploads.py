@@ -200,13 +200,22 @@ class Uploads:
         return self.folder / f"{_PART}{uuid.uuid4().hex}"
 
     def create(
-        self, owner: str, length: int, metadata: Mapping[str, str], admit: Callable[[Session], None] | None = None
+        self,
+        owner: str,
+        length: int,
+        metadata: Mapping[str, str],
+        admit: Callable[[Session], None] | None = None,
+        upload_id: str | None = None,
     ) -> UploadView:
         """A new upload of `length` bytes. The file is there before the row, so that a row never lacks its file.
 
-        `admit` is called in the transaction that makes the row; what it raises leaves nothing behind.
+        `admit` is called in the transaction that makes the row; what it raises leaves nothing behind. An id that
+        `admit` must know is given.
         """
-        return self._create(lambda path: path.touch(mode=0o600, exist_ok=False), owner, length, metadata, admit)
+        upload_id = upload_id or uuid.uuid4().hex
+        return self._create(
+            upload_id, lambda path: path.touch(mode=0o600, exist_ok=False), owner, length, metadata, admit
+        )
 
     def create_from(
         self,
@@ -223,10 +232,12 @@ class Uploads:
         """
         os.utime(source)  # a new name with an old time would look to the cleaner like one that belongs to nothing
         length = source.stat().st_size
-        return self._create(lambda path: path.hardlink_to(source), owner, length, metadata, admit, sha256)
+        upload_id = uuid.uuid4().hex
+        return self._create(upload_id, lambda path: path.hardlink_to(source), owner, length, metadata, admit, sha256)
 
     def _create(
         self,
+        upload_id: str,
         begin: Callable[[Path], None],
         owner: str,
         length: int,
@@ -235,7 +246,6 @@ class Uploads:
         sha256: str | None = None,
     ) -> UploadView:
         """Make the file with `begin`, then the row; a file whose hash is known is whole."""
-        upload_id = uuid.uuid4().hex
         self.folder.mkdir(parents=True, exist_ok=True)
         begin(self.path(upload_id))
         try:

@@ -15,7 +15,8 @@ from typing import Any
 import httpx
 from standardwebhooks import Webhook as StockWebhook
 
-from tests.api.conftest import free_port, wait_until
+from bench.soak.servers import free_port
+from tests.api.conftest import wait_until
 
 _PROCESS = Path(__file__).with_name("receiving_process.py")
 

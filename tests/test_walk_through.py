@@ -6,7 +6,6 @@ import os
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -18,6 +17,7 @@ import httpx
 import pytest
 from redis import Redis
 
+from bench.soak.servers import free_port
 from core.report.csv_form import read_csv
 from core.surface.ply import read_mesh
 from tests.conftest import service_url
@@ -59,12 +59,6 @@ def running(folder: Path, environment: dict[str, str], *commands: list[str]) -> 
             process.wait()
 
 
-def free_port() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return str(probe.getsockname()[1])
-
-
 def walk(folder: Path, port: str) -> None:
     """Wait for the server, run the commands, and look at what they fetched."""
     server, end = f"http://127.0.0.1:{port}", time.monotonic() + START_S
@@ -101,7 +95,7 @@ def walk(folder: Path, port: str) -> None:
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not installed")
 def test_embedded(tmp_path: Path) -> None:
-    port = free_port()
+    port = str(free_port())
     with running(tmp_path, {"BLADEATLAS_DATABASE_URL": ""}, ["serve", "--port", port]):
         walk(tmp_path, port)
     assert (tmp_path / "data" / "bladeatlas.db").is_file()
@@ -112,7 +106,7 @@ def test_embedded(tmp_path: Path) -> None:
 @pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not installed")
 def test_distributed(tmp_path: Path) -> None:
     """Celery on Redis, the plan in PostgreSQL, the tasks in a worker of their own."""
-    port = free_port()
+    port = str(free_port())
     broker = service_url("redis")
     with database_url("postgresql", tmp_path) as database, Redis.from_url(broker) as redis:
         redis.flushdb()

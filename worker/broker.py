@@ -25,10 +25,11 @@ from store.db import Database
 from store.factory import open_artifacts
 from store.graph import load_graph
 from store.json_log import logger
+from store.leasing import unique_name
 from store.records import Lease
 from store.retry import retried_until
 from store.settings import DeploymentSettings
-from worker.loop import ConcurrencyLimit, PollingRunners, WorkerService, unique_name
+from worker.loop import ConcurrencyLimit, PollingRunners, WorkerService
 from worker.periodic import Periodic
 from worker.runner import Ending, Heartbeat, ids
 

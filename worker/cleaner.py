@@ -95,6 +95,7 @@ class UploadCleaner:
 
     def round(self) -> None:
         """Mark, then remove files that belong to no living upload."""
+        self.retention.expire_transfers()
         self.retention.expire_uploads()
         listed = list(self.folder.iterdir()) if self.folder.is_dir() else []
         used = self.retention.uploads_in_use()

@@ -6,11 +6,8 @@ consists of, whether a queue feeds it or it asks by itself.
 
 from __future__ import annotations
 
-import os
-import platform
 import threading
 import time
-import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -230,11 +227,6 @@ class WorkerService:
     def _ended(self) -> None:
         self._publisher.nudge()
         self.on_end()
-
-
-def unique_name() -> str:
-    """A name that no other process has or had."""
-    return f"{platform.node()[:64]}-{os.getpid()}-{uuid.uuid4().hex[:6]}"
 
 
 @dataclass

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -18,6 +17,7 @@ from sqlalchemy import update
 
 from api.app import create_app
 from api.services import Services, make_services
+from bench.soak.servers import free_port
 from core.settings import make_settings
 from store.account_models import DEFAULT_ACCOUNT, USUAL_SCOPES, Scope
 from store.accounts import Accounts
@@ -169,12 +169,6 @@ class Server(uvicorn.Server):
 def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
     """`wait_for`, with the timeout that an answer of the API needs."""
     wait_for(condition, seconds)
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture

@@ -3,107 +3,34 @@
 from __future__ import annotations
 
 import hashlib
-import ssl
-import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from datetime import timedelta
 from ipaddress import ip_network
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
-import trustme
 from fastapi import FastAPI
 from sqlalchemy import select
 
 from api.app import create_app
 from store.downloads import AllowedHosts, Downloads
+from store.integration_models import Transfer
 from store.leasing import input_files
 from store.models import Inspection, Upload
 from store.outbound import Outbound
 from tests.api.conftest import Backend
-
-HERE = "127.0.0.2"
-"""The address that the tests allow; 127.0.0.1 stands for the inside of a network."""
-DATA = bytes(range(256)) * 12_000
-
-
-@dataclass
-class Files:
-    """A server of files that can be told to misbehave."""
-
-    port: int = 0
-    content: dict[str, bytes] = field(default_factory=lambda: {"/video": DATA, "/notes": b"[]"})
-    redirects: dict[str, str] = field(default_factory=dict)
-    cut_after: list[int] = field(default_factory=list)
-    """Bytes after which the next answers are cut off, one after the other."""
-    tag: str = '"one"'
-    status: int = 0
-    says_length: bool = True
-    piece_s: float = 0.0
-    asked: list[tuple[str, str]] = field(default_factory=list)
-    """Path and ``Range`` of every request."""
-
-    def url(self, path: str = "/video", host: str = "files.test") -> str:
-        return f"https://{host}:{self.port}{path}"
-
-
-class Handler(BaseHTTPRequestHandler):
-    files: Files
-
-    def do_GET(self) -> None:
-        files, wanted = self.files, self.headers.get("Range", "")
-        files.asked.append((self.path, wanted))
-        if self.path in files.redirects or files.status:
-            self.send_response(files.status or 302)
-            self.send_header("Location", files.redirects.get(self.path, ""))
-            self.send_header("Content-Length", "0")
-            self.end_headers()
-            return
-        data = files.content[self.path]
-        start = int(wanted[6:-1]) if wanted and self.headers["If-Range"] == files.tag else 0
-        self.send_response(206 if start else 200)
-        if start:
-            self.send_header("Content-Range", f"bytes {start}-{len(data) - 1}/{len(data)}")
-        if files.says_length:
-            self.send_header("Content-Length", str(len(data) - start))
-        if files.tag:
-            self.send_header("ETag", files.tag)
-        self.end_headers()
-        end = start + files.cut_after.pop(0) if files.cut_after else len(data)
-        for begin in range(start, min(end, len(data)), 100_000):
-            self.wfile.write(data[begin : min(begin + 100_000, end)])
-            time.sleep(files.piece_s)
-        self.close_connection = True
-
-    def log_message(self, format: str, *args: Any) -> None:
-        """Tests need no lines of it."""
-
-
-@pytest.fixture(scope="module")
-def authority() -> trustme.CA:
-    return trustme.CA()
+from tests.api.file_server import DATA, HERE, Files, files_served
 
 
 @pytest.fixture
-def files(authority: trustme.CA, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
-    authority.cert_pem.write_to_path(str(tmp_path / "ca.pem"))
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
     monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "ca.pem"))
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    authority.issue_cert("files.test", "inside.test").configure_cert(context)
-    made = Files()
-    server = ThreadingHTTPServer((HERE, 0), type("Bound", (Handler,), {"files": made}))
-    server.socket = context.wrap_socket(server.socket, server_side=True)
-    made.port = server.server_address[1]
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
-    thread.start()
-    yield made
-    server.shutdown()
-    server.server_close()
-    thread.join()
+    with files_served(tmp_path / "ca.pem") as served:
+        yield served
 
 
 @dataclass
@@ -145,7 +72,7 @@ def make_place(backend: Backend, files: Files, serve: Callable[[FastAPI], str], 
     place = Place(backend, app, serve(app))
     hosts = AllowedHosts.parse(f"files.test:{files.port}, inside.test:{files.port}")
     outbound = Outbound([ip_network(f"{HERE}/32")], place.look_up)
-    app.state.bladeatlas.fetches.downloads = Downloads(outbound, hosts, sleep=lambda _: None)
+    app.state.bladeatlas.fetches.fetcher.downloads = Downloads(outbound, hosts, sleep=lambda _: None)
     return place
 
 
@@ -162,6 +89,13 @@ def kept(place: Place, answer: httpx.Response) -> list[bytes]:
 def uploads_left(place: Place) -> int:
     with place.backend.db.read() as session:
         return len(session.scalars(select(Upload).where(Upload.removed_at.is_(None))).all())
+
+
+def let_pass(place: Place, seconds: float) -> None:
+    """Requests were sent so much longer ago."""
+    with place.backend.db.write() as session:
+        for row in session.scalars(select(Transfer)):
+            row.asked_at -= timedelta(seconds=seconds)
 
 
 def refused(answer: httpx.Response) -> tuple[int, str, str]:
@@ -214,16 +148,16 @@ def test_who_asks_again_takes_up_the_same_transfer(place: Place, files: Files) -
 
 
 def test_what_nobody_took_up_soon_is_fetched_anew(place: Place, files: Files) -> None:
-    moment = [0.0]
-    place.app.state.bladeatlas.fetches.clock = lambda: moment[0]
     wrong = {"video_url": files.url(), "parameters": {"options": {"no.such": 1}}}
     for later, requests in ((0.0, 1), (100.0, 1), (1000.0, 2)):
-        moment[0] += later
+        let_pass(place, later)
         assert place.post_until(**wrong).json()["code"] == "bad_parameters"
         assert len(files.asked) == requests
+        assert uploads_left(place) == 1
     files.content["/video"] = DATA[:5]
-    moment[0] += 1000.0
+    let_pass(place, 1000.0)
     assert kept(place, place.post_until(video_url=files.url())) == [DATA[:5]]
+    assert uploads_left(place) == 0
 
 
 @pytest.mark.parametrize(

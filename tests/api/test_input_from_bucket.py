@@ -15,6 +15,7 @@ from pydantic import SecretStr
 from api.app import create_app
 from core.errors import BadInput
 from store.bucket_inputs import AllowedBuckets, BucketInputs
+from store.downloads import Begun
 from store.environment import deployment_settings
 from store.leasing import input_files
 from store.models import Inspection
@@ -106,7 +107,7 @@ class Kept:
     """Takes bytes, and does something after the first."""
 
     def __init__(self, then: Callable[[], None]) -> None:
-        self.data, self._then = b"", then
+        self.data, self.tag, self._then = b"", "", then
 
     @property
     def offset(self) -> int:
@@ -116,8 +117,8 @@ class Kept:
         self.data += data
         self._then()
 
-    def restart(self) -> None:
-        self.data = b""
+    def restart(self, tag: str) -> None:
+        self.data, self.tag = b"", tag
 
 
 def test_a_file_that_changes_and_one_that_takes_too_long(s3: str) -> None:
@@ -127,11 +128,32 @@ def test_a_file_that_changes_and_one_that_takes_too_long(s3: str) -> None:
     source = BucketInputs(AllowedBuckets.parse(bucket), options(s3), sleep=lambda _: None)
     sink = Kept(lambda: files.pipe_file(f"{bucket}/a.mp4", VIDEO[::-1]))
     with pytest.raises(BadInput) as changed:
-        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 60, lambda _: sink)
+        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 60, lambda *_: sink)
     assert changed.value.code == "fetch_changed"
     with pytest.raises(BadInput) as late:
-        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 0, lambda _: sink)
+        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 0, lambda *_: sink)
     assert late.value.code == "fetch_timeout"
+
+
+def test_the_rest_of_a_file_is_fetched_unless_it_is_another_by_now(s3: str) -> None:
+    bucket = new_bucket(s3).removeprefix("s3://")
+    files = fsspec.filesystem("s3", **options(s3))
+    files.pipe_file(f"{bucket}/a.mp4", VIDEO)
+    source = BucketInputs(AllowedBuckets.parse(bucket), options(s3), sleep=lambda _: None)
+    tag = files.info(f"{bucket}/a.mp4", refresh=True)["ETag"]
+    for first, told, came in ((b"x" * 10, tag, b"x" * 10 + VIDEO[10:]), (b"x" * 10, "", VIDEO), (b"", "", VIDEO)):
+        sink = Kept(lambda: None)
+        sink.data = first
+        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 60, _never, Begun(sink, len(VIDEO), told))
+        assert sink.data == came
+        assert sink.tag == ("" if told else tag)
+    with pytest.raises(BadInput) as other:
+        source.fetch(f"s3://{bucket}/a.mp4", 1 << 30, 60, _never, Begun(sink, len(VIDEO) - 1, tag))
+    assert other.value.code == "fetch_changed"
+
+
+def _never(size: int, tag: str) -> Kept:
+    raise AssertionError("it was begun before")
 
 
 @pytest.mark.parametrize(

@@ -20,9 +20,10 @@ from fastapi import FastAPI
 from sqlalchemy import func, select
 
 from api.app import create_app
+from bench.soak.servers import free_port
 from store.db import Database
 from store.models import Inspection, Reservation, Upload
-from tests.api.conftest import ROOT, TUS, Backend, client_of, free_port, wait_until
+from tests.api.conftest import ROOT, TUS, Backend, client_of, wait_until
 from tests.api.test_submit import leftovers, post, rows
 from tests.databases import BOTH, database
 

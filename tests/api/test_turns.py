@@ -109,6 +109,10 @@ def test_nobody_waits_without_an_end() -> None:
             await waiting
         assert (caught.value.status, caught.value.code) == (503, "probe_wait")
         assert turns.waiting == 0
+        turns.wait_s = 0.0
+        with pytest.raises(Refused, match=r"within 0 s \("):  # a whole number of seconds has no decimals
+            async with turns.turn("b"):
+                pass
 
     run(test)
 

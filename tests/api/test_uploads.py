@@ -18,8 +18,9 @@ import pytest
 from fastapi.testclient import TestClient
 from tusclient.client import TusClient
 
+from bench.soak.servers import free_port
 from store.account_models import DEFAULT_ACCOUNT
-from tests.api.conftest import TUS, Backend, client_of, free_port, wait_until
+from tests.api.conftest import TUS, Backend, client_of, wait_until
 
 _BYTES = {"Content-Type": "application/offset+octet-stream"}
 

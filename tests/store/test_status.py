@@ -7,10 +7,12 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
-from sqlalchemy import select, update
+from sqlalchemy import event, select, update
 
 from core.errors import BadInput
+from core.products.front import FramesProduct
 from core.settings import make_settings
+from core.states import InspectionState
 from store.account_models import DEFAULT_ACCOUNT
 from store.db import Database
 from store.inspections import Inspections, delete_results_from, mark_deleted
@@ -20,6 +22,7 @@ from store.monitoring import count_all
 from store.plan import Plan
 from store.status import InspectionStatus, StageCount, Statuses, plan_share
 from store.timings import Expectation, StageTiming, expected_frames, learn_timings, plan_eta, stage_eta
+from tests.core.making_products import facts_of
 from tests.store.small_plan import FILES, GRAPH, result_for
 
 
@@ -176,8 +179,25 @@ def test_frames_are_bounded_by_the_settings_until_they_are_counted(db: Database)
         row.settings = {**row.settings, "frames": {**row.settings["frames"], "max_count": 300}}
     assert expected_frames(db, row) == (24, 300)
     with db.write() as session:
-        session.execute(update(Task).values(key="frames", facts={"n_frames": 96}))
+        session.execute(update(Task).values(key="frames", facts=facts_of(FramesProduct, n_frames=96)))
     assert expected_frames(db, row) == (96, 96)
+
+
+def test_frames_of_an_inspection_that_is_over_are_not_asked_for(db: Database) -> None:
+    create(db, "one")
+    with db.read() as session:
+        row = session.get_one(Inspection, "one")
+    asked: list[InspectionState] = []
+
+    def note(*_: object) -> None:
+        asked.append(row.state)
+
+    event.listen(db.engine, "before_cursor_execute", note)
+    for state in (InspectionState.RUNNING, InspectionState.FAILED, InspectionState.SUCCEEDED):
+        row.state = state
+        assert expected_frames(db, row)[0] == 24
+    event.remove(db.engine, "before_cursor_execute", note)
+    assert set(asked) == {InspectionState.RUNNING}
 
 
 def test_deleting_takes_the_stage_and_all_that_follow(db: Database) -> None:

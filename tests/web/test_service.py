@@ -15,6 +15,7 @@ from sqlalchemy import select
 
 from api.app import create_app
 from api.services import make_services
+from bench.soak.servers import free_port
 from core.states import InspectionState
 from store.account_models import Scope
 from store.factory import open_artifacts, open_database
@@ -24,7 +25,7 @@ from store.publishing import media_type
 from store.reviews import Reviews
 from store.settings import DeploymentSettings
 from store.tables import defect_rows
-from tests.api.conftest import ANNOTATIONS, VIDEO, Backend, Server, free_port, wait_until
+from tests.api.conftest import ANNOTATIONS, VIDEO, Backend, Server, wait_until
 from tests.core.inspection_report.making_reports import text_of
 from tests.core.making_results import opened as committed
 from tests.databases import put_new_tables

@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bench.soak.servers import free_port
 from tests.waiting import wait_for
 from tests.worker.deployment import ROOT
-from tests.worker.test_serve import free_port
 
 NAME = "inspections.example.com"
 PREFIX = "/blades"

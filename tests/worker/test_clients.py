@@ -17,6 +17,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from bench.soak.servers import free_port
 from store.db import open_sqlite
 from store.keys import Keys
 from tests.conftest import found_program
@@ -24,7 +25,6 @@ from tests.waiting import wait_for
 from tests.web.test_bundle import UNREACHED
 from tests.worker.deployment import ROOT, Deployment
 from tests.worker.nginx import PREFIX, proxied
-from tests.worker.test_serve import free_port
 
 pytestmark = [pytest.mark.deployment, pytest.mark.long, pytest.mark.tool("nginx")]
 _PAGE = ROOT / "docs" / "how-to" / "clients.md"

@@ -15,12 +15,13 @@ import httpx
 import psutil
 import pytest
 
+from bench.soak.servers import free_port
 from store.db import open_sqlite
 from store.keys import Keys
 from tests.waiting import wait_for
 from tests.worker.deployment import ROOT, Deployment
 from tests.worker.nginx import NAME, PREFIX, Proxy, proxied
-from tests.worker.test_serve import _answers, free_port
+from tests.worker.test_serve import _answers
 
 pytestmark = pytest.mark.deployment
 _TUS = {"Tus-Resumable": "1.0.0"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +11,7 @@ import httpx
 import psutil
 import pytest
 
+from bench.soak.servers import free_port
 from store.db import open_sqlite
 from store.keys import Keys
 from store.models import Inspection
@@ -30,12 +30,6 @@ def place(tmp_path: Path) -> Iterator[Deployment]:
     yield made
     made.stop()
     database.close()
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def serve(place: Deployment) -> str:

@@ -7,6 +7,7 @@ import importlib
 import inspect
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from types import UnionType
 from typing import get_args, get_type_hints
@@ -145,10 +146,12 @@ def test_products_are_found_by_key_and_by_stage() -> None:
         products.of(ReducerProduct, "x", "nothing")
 
 
-def _sources() -> Iterator[tuple[Path, ast.Module]]:
-    for package in ("core", "store", "worker", "api", "cli", "bench"):
-        for path in (ROOT / package).rglob("*.py"):
-            yield path, ast.parse(path.read_text(encoding="utf-8"))
+@cache
+def _sources() -> list[tuple[Path, ast.Module]]:
+    paths = [
+        path for name in ("core", "store", "worker", "api", "cli", "bench") for path in (ROOT / name).rglob("*.py")
+    ]
+    return [(path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths]
 
 
 def _is_facts(node: ast.AST) -> bool:

@@ -9,6 +9,7 @@ import json
 import re
 from collections.abc import Iterator
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
 from typing import TypeGuard
 
@@ -16,7 +17,9 @@ import pytest
 
 from bench.mutate.command import Fate
 from core.flags import Severity, Verdict
-from core.scene.case import CaseKind, CaseReason, CaseStatus, StartMode
+from core.products.adjustment import LensDecision
+from core.products.front import FocalSource
+from core.scene.case import CaseKind, CaseReason, CaseStatus, ConfirmedModel, StartMode
 from core.scene.detection import Outcome, PlacementMethod, Reason
 from core.scene.frame import Role
 from core.states import AttemptOutcome, InspectionState, Queue, RunState, StageState, TaskState, run_state
@@ -44,6 +47,9 @@ DECLARED = {
     "stopped": {member.value for member in StopReason},
     "scope": {member.value for member in Scope},
     "fate": {member.value for member in Fate},
+    "focal_from": {member.value for member in FocalSource},
+    "decision": {member.value for member in LensDecision},
+    "kept": {member.value for member in ConfirmedModel},
 }
 """Values by the name of the attribute or key that holds them."""
 ONLY_DECLARED = {"outcome", "severity", "verdict", "rung", "role", "start_mode"}
@@ -53,6 +59,7 @@ KINDS = (
     *(InspectionState, TaskState, StageState, AttemptOutcome, RunState, Outcome, Severity, Verdict),
     *(Reason, PlacementMethod, Role, CaseKind, CaseStatus, CaseReason, StartMode),
     *(Queue, EventKind, ReservationKind, StopReason, Fate, Scope),
+    *(FocalSource, LensDecision, ConfirmedModel),
 )
 KEY_MODULE = "core/task_key.py"
 PUBLISHED = "core/outputs.py"
@@ -60,10 +67,11 @@ PUBLISHED = "core/outputs.py"
 FILE_NAME = re.compile(r"[\w{}.-]+\.(json|npz|csv|ply|png|jpg|glb|db|bin|html)")
 
 
-def sources() -> Iterator[tuple[str, ast.Module]]:
-    for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
+@cache
+def sources() -> list[tuple[str, ast.Module]]:
+    """Every module of the project, parsed once for all rules: that takes longer than a rule."""
+    paths = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+    return [(path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))) for path in paths]
 
 
 def spelt(tree: ast.AST) -> Iterator[int]:
@@ -162,6 +170,8 @@ def test_declared_words_are_spelt_in_their_module_only(rule: object) -> None:
         (spelt, 'StageSpec(queue="gpu")'),
         (spelt, 'Reservation(kind="upload")'),
         (spelt, 'held.stop = "lost"'),
+        (spelt, 'if lens.focal_from != "estimated": pass'),
+        (spelt, 'kept = "confirmed"'),
         (literal_types, 'State = Literal["queued", "running"]'),
         (parsed_keys, 'stage = task.key.split("/", 1)[0]'),
         (parsed_keys, 'found = key.startswith("focal/")'),

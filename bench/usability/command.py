@@ -71,7 +71,7 @@ def measure(result: Path) -> list[Outcome]:
                 page = context.new_page()
                 page.goto(address + (f"#f={boxed}" if kind is Viewer and task is Task.SAME else ""))
                 page.locator("main").wait_for()
-                page.wait_for_timeout(500)
+                page.wait_for_timeout(kind.LAYS_OUT_MS)
                 outcomes.append(_asked(kind(page, boxed), name, task, right[task]))
                 page.close()
     return outcomes

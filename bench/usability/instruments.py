@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from bench.usability.klm import Hand
 from core.study.truth import MIDDLE, Task
@@ -24,6 +24,8 @@ _ANSWER_MS = 10_000
 class Instrument:
     """A page that is open, and the hand at it."""
 
+    LAYS_OUT_MS: ClassVar[int] = 500
+    """How long a page that was just opened is left alone, because its script lays it out."""
     page: Any
     """Of Playwright."""
     boxed_frame: int = 0
@@ -153,6 +155,8 @@ class Viewer(Instrument):
 
 class ReportPage(Instrument):
     """The report as a page: nothing to press, all to read."""
+
+    LAYS_OUT_MS = 0
 
     @property
     def tasks(self) -> Mapping[Task, Callable[[], Answer]]:

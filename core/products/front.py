@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from core.flags import Flag
 from core.json_files import JsonObject
@@ -134,6 +135,18 @@ class FocalProduct(Product):
     spans: tuple[FocalSpan, ...]
 
 
+class FocalSource(StrEnum):
+    """Where the focal length that mapping starts from comes from."""
+
+    CALIBRATION = "calibration"
+    GIVEN = "given"
+    """The field of view that the settings name."""
+    ESTIMATED = "estimated"
+    """The starts of `FocalProduct`."""
+    COLMAP = "colmap"
+    """COLMAP's default, 1.2 times the longer side of the crop."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class CameraProduct(Product):
     """The lens that mapping starts from, and the starts it was chosen from: the content of ``camera.json``."""
@@ -144,8 +157,7 @@ class CameraProduct(Product):
     height: int
     params: tuple[float, ...]
     """In COLMAP's order."""
-    focal_from: str
-    """``calibration``, ``given``, ``estimated`` or ``colmap``."""
+    focal_from: FocalSource
     reason: str
     """Code that says why an estimate was asked for and not used; else empty."""
     chosen_start_deg: float | None

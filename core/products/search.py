@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 
 from core.flags import Flag
 from core.json_files import JsonObject
+from core.products.adjustment import Adjustment
 from core.products.contract import OMITTED, Product
 from core.products.front import CameraProduct, GraphProduct
-from core.scene.case import CaseKind, CaseRow, CaseStatus, StartMode
+from core.scene.case import CaseKind, CaseRow, CaseStatus, ConfirmedModel, StartMode
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,8 +157,7 @@ class ConfirmProduct(Product):
     mean_reprojection_error_px: float
     median_reprojection_error_px: float
     start_mode: StartMode | None
-    kept: str
-    """``confirmed`` or ``searched``."""
+    kept: ConfirmedModel
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,8 +175,8 @@ class ExtendProduct(Product):
     focal_px: float
     principal_point_px: tuple[float, float]
     principal_point_refined: bool
-    adjustment: JsonObject | None
-    """What the final adjustment did, in parts; None without one."""
+    adjustment: Adjustment | None
+    """None without a final adjustment."""
     checks: tuple[Flag, ...]
     joined: tuple[JsonObject, ...]
     """What became of each submodel left over (`core.sparse.joining.Attempt`)."""

@@ -44,6 +44,15 @@ class StartMode(StrEnum):
     """A warm start was tried and was worse."""
 
 
+class ConfirmedModel(StrEnum):
+    """Which model of the winning case is gone on with."""
+
+    CONFIRMED = "confirmed"
+    """The one that was mapped again from scratch."""
+    SEARCHED = "searched"
+    """The one that the search found."""
+
+
 class CaseReason(StrEnum):
     """Why a case came to its end without a model."""
 

@@ -20,11 +20,9 @@ from numpy.typing import NDArray
 
 from core.checks.stats import model_stats
 from core.geometry.lens import REDUCED, LensModel
-from core.sparse.keypoint_alignment import Aligned
+from core.products.adjustment import Adjustment, Alignment, LensDecision, PrincipalPoint, RadialTerms, Trimming
 from core.sparse.lens_trial import (
     TRIAL_POINTS,
-    PrincipalPoint,
-    RadialTerms,
     judge_principal_point,
     judge_radial_terms,
     try_lens,
@@ -32,7 +30,6 @@ from core.sparse.lens_trial import (
 from core.sparse.points import move_points, observe
 from core.sparse.trimming import (
     POINT_LOSS_PX,
-    Trimming,
     keep_agreeing,
     set_lens,
     solve,
@@ -60,27 +57,18 @@ ALIGNMENTS = 2
 """The first finds its warps by a model of keypoints that are not aligned."""
 
 Progress = Callable[[float, str], None]
-Align = Callable[[pycolmap.Reconstruction, bool], Aligned]
+Align = Callable[[pycolmap.Reconstruction, bool], Alignment]
 """Aligns the keypoints of a model in place; whether observations that do not align are dropped."""
 
 
 @dataclass(frozen=True)
-class Adjustment:
-    """What the final adjustment did."""
+class Adjusted:
+    """A model after its final adjustment."""
 
     model: pycolmap.Reconstruction
     """`pycolmap.Reconstruction`"""
-    rounds: int
-    stable: bool
-    """Whether the last round changed next to nothing."""
-    error_before_px: float
-    error_after_px: float
-    principal_point: PrincipalPoint
-    radial_terms: RadialTerms
-    trimming: Trimming | None
-    """None when all tracks have a say."""
-    aligned: Aligned | None
-    """Of the first alignment; None when keypoints stay where they were detected."""
+    adjustment: Adjustment
+    """What was done to it."""
 
 
 def adjust(
@@ -96,7 +84,7 @@ def adjust(
     loss_scale_px: float = 1.0,
     threads: int = 1,
     progress: Progress = lambda share, message: None,
-) -> Adjustment:
+) -> Adjusted:
     """Adjust a copy of `model` to convergence.
 
     Args:
@@ -128,9 +116,9 @@ def adjust(
     # A model without radial terms has one stand-in, for both stages of trimming.
     stages: Sequence[str] = (lens,) if hold_lens else reduced[1:] or reduced
     trimmer = partial(trim, options=partial(options_of, False), hold_lens=hold_lens) if trim_tracks else None
-    trimming, aligned = _settle(work, schedule[-1], align, trimmer, stages)
+    trimming, alignment = _settle(work, schedule[-1], align, trimmer, stages)
     progress(0.7, "lens")
-    point, radial = PrincipalPoint(False, "off"), RadialTerms(len(reduced) - 1, "off")
+    point, radial = PrincipalPoint(decision=LensDecision.OFF), _not_judged(len(reduced) - 1)
     if not hold_lens:
         trial_options = options_of(refine_principal_point, loss_scale_px)
         point, radial = _judge_lens(work, trial_options, trimming is not None, judge_radial and len(reduced) > 1)
@@ -157,7 +145,21 @@ def adjust(
             set_lens(work, lens)
         _filter(work, cache, options)
     after = model_stats(work).mean_reprojection_error_px
-    return Adjustment(work, rounds, stable, before, after, point, radial, trimming, aligned)
+    adjustment = Adjustment(
+        rounds=rounds,
+        stable=stable,
+        error_before_px=before,
+        error_after_px=after,
+        principal_point=point,
+        radial_terms=radial,
+        alignment=alignment,
+        trimming=trimming,
+    )
+    return Adjusted(work, adjustment)
+
+
+def _not_judged(number: int) -> RadialTerms:
+    return RadialTerms(decision=LensDecision.OFF, number=number)
 
 
 def _settle(
@@ -166,23 +168,23 @@ def _settle(
     align: Align | None,
     trimmer: Callable[..., Trimming] | None,
     stages: Sequence[str],
-) -> tuple[Trimming | None, Aligned | None]:
+) -> tuple[Trimming | None, Alignment | None]:
     """Align keypoints and adjust in turns, in place; what the last choice of tracks and the first alignment did.
 
     `trimmer` is `trim` of a model and the lenses of its stages, None where all tracks have a say.
     """
     trimming: Trimming | None = None
-    aligned: Aligned | None = None
+    alignment: Alignment | None = None
     for turn in range(ALIGNMENTS if align is not None else 1):
         if align is not None:
             done = align(work, True)
-            aligned = aligned or done
+            alignment = alignment or done
         if trimmer is not None:
             found = trimmer(work, lenses=stages if turn == 0 else stages[-1:])
             trimming = found if trimming is None else replace(found, rounds=trimming.rounds + found.rounds)
         elif align is not None:
             solve(work, options)
-    return trimming, aligned
+    return trimming, alignment
 
 
 def _judge_lens(
@@ -196,7 +198,7 @@ def _judge_lens(
         trimmed: the tracks that agree best are asked, not all.
         judge_radial: judge the radial terms too, which takes trimmed tracks.
     """
-    point, radial = PrincipalPoint(False, "off"), RadialTerms(2, "off")
+    point, radial = PrincipalPoint(decision=LensDecision.OFF), _not_judged(2)
     judge_radial = judge_radial and trimmed
     if options.refine_principal_point or judge_radial:
         said = pycolmap.Reconstruction(model)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from core.checks.stats import ModelStats, model_stats
-from core.scene.case import CaseReason, StartMode
+from core.scene.case import CaseReason, ConfirmedModel, StartMode
 from core.settings.groups import MapperSettings
 from core.sparse.densify import densify, free_distortion, transfer_poses, triangulate
 from core.sparse.initial_pair import rank_initial_pairs
@@ -19,20 +20,12 @@ from core.viewgraph import PairTable, database_of, read_graph
 
 if TYPE_CHECKING:
     import pycolmap
-from collections.abc import Callable
-from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
-
-if TYPE_CHECKING:
-    import pycolmap
 
 CONFIRM_TRACKS = 1000
 """Keypoints per image that take part when the search takes all; on these COLMAP's own settings are affordable."""
 
 CLEARLY_WEAKER = 0.97
 """The searched model is kept only if the confirmed one has a smaller share of its images or points than this."""
-
-Kept = Literal["confirmed", "searched"]
 
 
 def confirm(case: Case, progress: Progress | None = None) -> pycolmap.Reconstruction | None:
@@ -46,15 +39,15 @@ def confirm(case: Case, progress: Progress | None = None) -> pycolmap.Reconstruc
     return run_case(replace(case, settings=settings), None, progress).model
 
 
-def choose(searched: ModelStats, confirmed: ModelStats | None) -> Kept:
+def choose(searched: ModelStats, confirmed: ModelStats | None) -> ConfirmedModel:
     """The confirmed model, unless it is clearly weaker than the searched one."""
     if confirmed is None:
-        return "searched"
+        return ConfirmedModel.SEARCHED
     weaker = (
         confirmed.registered_images < CLEARLY_WEAKER * searched.registered_images
         or confirmed.points3D < CLEARLY_WEAKER * searched.points3D
     )
-    return "searched" if weaker else "confirmed"
+    return ConfirmedModel.SEARCHED if weaker else ConfirmedModel.CONFIRMED
 
 
 def confirmed_or_searched(
@@ -62,14 +55,14 @@ def confirmed_or_searched(
     searched: pycolmap.Reconstruction,
     progress: Progress | None = None,
     is_wrong: Callable[[pycolmap.Reconstruction], bool] | None = None,
-) -> tuple[pycolmap.Reconstruction, Kept]:
+) -> tuple[pycolmap.Reconstruction, ConfirmedModel]:
     """The model to go on with and which one it is; a confirmed model that `is_wrong` rejects is not gone on with."""
     confirmed = confirm(case, progress)
-    if confirmed is None or choose(model_stats(searched), model_stats(confirmed)) == "searched":
-        return searched, "searched"
+    if confirmed is None or choose(model_stats(searched), model_stats(confirmed)) == ConfirmedModel.SEARCHED:
+        return searched, ConfirmedModel.SEARCHED
     if is_wrong is not None and is_wrong(confirmed):
-        return searched, "searched"
-    return confirmed, "confirmed"
+        return searched, ConfirmedModel.SEARCHED
+    return confirmed, ConfirmedModel.CONFIRMED
 
 
 MIN_MATCHES = 15

@@ -20,6 +20,7 @@ import pycolmap
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.products.adjustment import Alignment
 from core.scene.frame import image_name
 from core.scene.views import Views, views_of
 from core.sparse.alignment_kernels import align_patches, take_patches
@@ -52,15 +53,6 @@ Read = Callable[[str], NDArray[np.uint8]]
 
 
 @dataclass(frozen=True)
-class Aligned:
-    """What happened to the observations that are not their track's reference."""
-
-    observations: int
-    aligned: int
-    median_shift_px: float
-
-
-@dataclass(frozen=True)
 class _Tracks:
     """The points and their observations; every point has one reference image."""
 
@@ -86,7 +78,7 @@ class _Tracks:
 
 def align_keypoints(
     model: pycolmap.Reconstruction, read: Read, still: Bool | None = None, *, drop: bool = True, threads: int = 1
-) -> Aligned:
+) -> Alignment:
     """Move keypoints of a model in place.
 
     Args:
@@ -99,7 +91,7 @@ def align_keypoints(
     views = _views(model)
     tracks = _tracks(model, views)
     if not len(tracks.point):
-        return Aligned(0, 0, 0.0)
+        return Alignment(observations=0, aligned=0, median_shift_px=0.0)
     warps = _warps(tracks, views, next(iter(model.cameras.values())))
     references = _by_image(tracks.reference, len(views))
     finite = np.asarray(np.isfinite(warps).all(axis=(1, 2)), np.bool_)
@@ -132,7 +124,11 @@ def align_keypoints(
     good = found >= MIN_CORRELATION
     _write(model, views, tracks, places + PIXEL_CENTRE, good, drop)
     shift = np.linalg.norm(places + PIXEL_CENTRE - tracks.xy, axis=1)[good]
-    return Aligned(len(good), int(good.sum()), float(np.median(shift)) if good.any() else 0.0)
+    return Alignment(
+        observations=len(good),
+        aligned=int(good.sum()),
+        median_shift_px=float(np.median(shift)) if good.any() else 0.0,
+    )
 
 
 def _by_image(image: I64, count: int, wanted: Bool | None = None) -> list[I64]:

@@ -9,7 +9,7 @@ import pycolmap
 
 from core.flags import Flag, Severity
 from core.geometry.lens import PERSPECTIVE, REDUCED, Lens, LensModel, make_lens, scale_to
-from core.products.front import CameraProduct, FocalProduct, FramesProduct
+from core.products.front import CameraProduct, FocalProduct, FocalSource, FramesProduct
 from core.settings import Settings
 from core.settings.groups import CameraSettings
 
@@ -107,14 +107,14 @@ def choose_lens(frames: FramesProduct, settings: CameraSettings, starts: Sequenc
     width, height = _size(frames)
     source_width = frames.source_width
     model: str = settings.model
-    focal, k1, origin, reason = 1.2 * max(width, height), 0.0, "colmap", ""
+    focal, k1, origin, reason = 1.2 * max(width, height), 0.0, FocalSource.COLMAP, ""
     chosen: FocalProduct | None = None
     others: Sequence[FocalProduct] = ()
     told = _told_lens(frames, settings)
     if told is not None:
-        focal, origin = told.focal_px, "calibration"
+        focal, origin = told.focal_px, FocalSource.CALIBRATION
     elif settings.fov_deg is not None:
-        focal, origin = focal_from_fov(settings.fov_deg, source_width, model), "given"
+        focal, origin = focal_from_fov(settings.fov_deg, source_width, model), FocalSource.GIVEN
     elif settings.focal == "estimate":
         starts, others = _of_kind(starts, model), _of_kind(starts, LensModel.PINHOLE)
         chosen = _best_start(starts, source_width, model)
@@ -126,9 +126,9 @@ def choose_lens(frames: FramesProduct, settings: CameraSettings, starts: Sequenc
         elif _ran_away_alone(chosen, starts, source_width, model):
             chosen, reason = None, UNKNOWN
         else:
-            focal, k1, origin = chosen.focal_px, chosen.k1, "estimated"
+            focal, k1, origin = chosen.focal_px, chosen.k1, FocalSource.ESTIMATED
     agreement = _agreement(starts, focal) if chosen is not None else None
-    is_told = origin in ("given", "calibration")
+    is_told = origin in (FocalSource.GIVEN, FocalSource.CALIBRATION)
     lens = told or Lens(focal, focal, *principal_point(frames, settings), (k1, 0.0, 0.0, 0.0))
     return CameraProduct(
         model=model,

@@ -14,6 +14,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from core.checks.stats import model_stats
+from core.products.adjustment import LensDecision, PrincipalPoint, RadialTerms
 from core.sparse.points import observe
 from core.sparse.trimming import whole
 
@@ -38,8 +39,8 @@ come out larger than they are, so the trial is the stricter for it."""
 class Trial:
     """The free parameters of a camera before and after, with what is known of them."""
 
-    reason: str
-    """Why there is no covariance: ``few_images``, ``no_covariance``; empty when there is one."""
+    missing: LensDecision | None
+    """Why there is no covariance; None when there is one."""
     camera: pycolmap.Camera | None = None
     """`pycolmap.Camera` of the trial."""
     start: F64 | None = None
@@ -51,38 +52,10 @@ class Trial:
     """Whether the median error fell."""
 
 
-@dataclass(frozen=True)
-class PrincipalPoint:
-    """What freeing the principal point gave, and whether it was kept."""
-
-    refined: bool
-    reason: str
-    """``kept``, or why not: ``off``, ``few_images``, ``no_covariance``, ``uncertain``, ``insignificant``,
-    ``implausible``, ``no_gain``."""
-    sigma_px: tuple[float, float] | None = None
-    """Posterior standard deviations of cx and cy, scaled by the residuals and by the correlation within tracks."""
-    shift_px: tuple[float, float] | None = None
-    """From the start to the free estimate."""
-
-
-@dataclass(frozen=True)
-class RadialTerms:
-    """How many radial terms the lens keeps, and what the tracks say of each."""
-
-    number: int
-    """How many the lens keeps: 0, 1 or 2."""
-    reason: str
-    """``significant``, ``insignificant``, or why nobody knows: ``off``, ``few_images``, ``no_covariance``."""
-    first: float | None = None
-    """Deviation of the first from 0 where the second is held at 0 or is not part of the model, in sigmas."""
-    second: float | None = None
-    """Deviation of the second from 0 beside the first, in sigmas."""
-
-
 def try_lens(model: pycolmap.Reconstruction, options: pycolmap.BundleAdjustmentOptions) -> Trial:
     """Adjust a copy of a model with one camera; `options` is from `adjustment_options` and says what is free."""
     if model.num_reg_images() < MIN_IMAGES:
-        return Trial("few_images")
+        return Trial(LensDecision.FEW_IMAGES)
     trial = pycolmap.Reconstruction(model)
     keep_covering_points(trial, TRIAL_POINTS)
     before = model_stats(trial).median_reprojection_error_px
@@ -93,7 +66,7 @@ def try_lens(model: pycolmap.Reconstruction, options: pycolmap.BundleAdjustmentO
     covariance = pycolmap.estimate_ba_covariance(pycolmap.BACovarianceOptions(), trial, adjuster)
     block = None if covariance is None else covariance.get_other_params_cov(camera.params)
     if block is None or not np.isfinite(block).all():
-        return Trial("no_covariance", camera, start)
+        return Trial(LensDecision.NO_COVARIANCE, camera, start)
     stats = model_stats(trial)
     # Ceres takes residuals in px as if their sigma were 1; the median length of a 2D normal is 1.1774 sigma.
     variance = (stats.median_reprojection_error_px / 1.1774) ** 2
@@ -104,48 +77,48 @@ def try_lens(model: pycolmap.Reconstruction, options: pycolmap.BundleAdjustmentO
     free[camera.principal_point_idxs()] = options.refine_principal_point
     whole_block = np.zeros((len(start), len(start)))
     whole_block[np.ix_(free, free)] = np.asarray(block) * variance
-    return Trial("", camera, start, whole_block, stats.median_reprojection_error_px < before)
+    return Trial(None, camera, start, whole_block, stats.median_reprojection_error_px < before)
 
 
 def judge_principal_point(trial: Trial) -> PrincipalPoint:
     """Whether the principal point of a trial is well determined and off its start."""
     if trial.camera is None or trial.start is None:
-        return PrincipalPoint(False, trial.reason)
+        return PrincipalPoint(decision=_why_unknown(trial))
     camera, center = trial.camera, trial.camera.principal_point_idxs()
     shift = np.array(camera.params)[center] - trial.start[center]
     if trial.covariance is None:
-        return PrincipalPoint(False, trial.reason, None, _pair(shift))
+        return PrincipalPoint(decision=_why_unknown(trial), shift_px=_pair(shift))
     sigma = np.sqrt(np.diag(trial.covariance)[center].clip(min=0))
-    reason = "kept"
+    decision = LensDecision.KEPT
     if (np.degrees(sigma / camera.mean_focal_length()) > MAX_SIGMA_DEG).any():
-        reason = "uncertain"
+        decision = LensDecision.UNCERTAIN
     elif (np.abs(shift) < MIN_SHIFT_SIGMAS * sigma).all():
-        reason = "insignificant"
+        decision = LensDecision.INSIGNIFICANT
     elif (np.abs(shift) > MAX_SHIFT_SHARE * max(camera.width, camera.height)).any():
-        reason = "implausible"
+        decision = LensDecision.IMPLAUSIBLE
     elif not trial.gained:
-        reason = "no_gain"
-    return PrincipalPoint(reason == "kept", reason, _pair(sigma), _pair(shift))
+        decision = LensDecision.NO_GAIN
+    return PrincipalPoint(decision=decision, sigma_px=_pair(sigma), shift_px=_pair(shift))
 
 
 def judge_radial_terms(trial: Trial) -> RadialTerms:
     """How many of the one or two radial terms of a trial differ from 0."""
     if trial.covariance is None or trial.camera is None:
-        return RadialTerms(2, trial.reason)
+        return RadialTerms(decision=_why_unknown(trial), number=2)
     radial = trial.camera.extra_params_idxs()
     covariance = trial.covariance[np.ix_(radial, radial)]
     tiny = np.finfo(float).tiny
     if len(radial) == 1:
         alone = float(abs(np.array(trial.camera.params)[radial][0]) / np.sqrt(max(covariance[0, 0], tiny)))
         found = alone >= MIN_FIRST_SIGMAS
-        return RadialTerms(int(found), "significant" if found else "insignificant", alone)
+        return RadialTerms(decision=_decision(found), number=int(found), first=alone)
     k1, k2 = np.array(trial.camera.params)[radial]
     second = float(abs(k2) / np.sqrt(max(covariance[1, 1], tiny)))
     # The first given that the second is 0: mean and variance of a normal conditioned on its other variable.
     slope = covariance[0, 1] / max(covariance[1, 1], tiny)
     first = float(abs(k1 - slope * k2) / np.sqrt(max(covariance[0, 0] - slope * covariance[0, 1], tiny)))
     number = 2 if second >= MIN_SHIFT_SIGMAS else 1 if first >= MIN_FIRST_SIGMAS else 0
-    return RadialTerms(number, "significant" if number else "insignificant", first, second)
+    return RadialTerms(decision=_decision(number > 0), number=number, first=first, second=second)
 
 
 def keep_covering_points(model: pycolmap.Reconstruction, per_image: int) -> None:
@@ -153,6 +126,15 @@ def keep_covering_points(model: pycolmap.Reconstruction, per_image: int) -> None
     seen = observe(model)
     order = np.argsort(-seen.lengths, kind="stable")
     seen.keep(model, seen.first(order, np.full(len(order), per_image)))
+
+
+def _decision(found: bool) -> LensDecision:
+    return LensDecision.SIGNIFICANT if found else LensDecision.INSIGNIFICANT
+
+
+def _why_unknown(trial: Trial) -> LensDecision:
+    """Why a trial without covariance says nothing."""
+    return trial.missing or LensDecision.NO_COVARIANCE
 
 
 def _pair(values: F64) -> tuple[float, float]:

@@ -15,13 +15,13 @@ The lens has few terms meanwhile, first one and then two: k3, k4 and a second fo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
 from core.geometry.lens import REDUCED, LensModel, lens_of
+from core.products.adjustment import Trimming
 from core.sparse.points import Observations, errors_px, move_points, observe
 
 F64 = NDArray[np.float64]
@@ -51,25 +51,6 @@ POINT_LOSS_PX = 1.0
 
 Options = Callable[[float], pycolmap.BundleAdjustmentOptions]
 """`BundleAdjustmentOptions` for a scale of Cauchy's loss in px; which parameters are free is the caller's."""
-
-
-@dataclass(frozen=True)
-class Trimming:
-    """What the choice of tracks did to a model."""
-
-    rounds: int
-    kept: int
-    """Tracks that the cameras follow from."""
-    median_error_px: float
-    """Of the better part of the tracks before the last round, and the scale of its loss."""
-    focal_before_px: float
-    """Before the last turn in which tracks were chosen."""
-    focal_after_px: float
-
-    @property
-    def shift(self) -> float:
-        """Relative change of the focal length by the last choice of tracks."""
-        return self.focal_after_px / self.focal_before_px - 1.0
 
 
 def trim(
@@ -110,7 +91,7 @@ def trim(
             last, focal = focal, _focal(model)
             if not hold_lens and abs(focal / last - 1.0) < SETTLED:
                 break
-    return Trimming(rounds, kept, scale, before, focal)
+    return Trimming(rounds=rounds, kept=kept, median_error_px=scale, focal_before_px=before, focal_after_px=focal)
 
 
 def set_lens(model: pycolmap.Reconstruction, name: str) -> None:

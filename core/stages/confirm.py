@@ -9,7 +9,7 @@ from core.checks.model import is_wrong
 from core.checks.stats import model_stats
 from core.io.sparse import read_model, write_model
 from core.products.search import ChoiceProduct, ConfirmProduct
-from core.scene.case import GRAPHS, REDUCERS, StartMode
+from core.scene.case import GRAPHS, REDUCERS, ConfirmedModel, StartMode
 from core.sparse.cases import Case, confirmed_or_searched
 from core.stage import StageTask
 from core.viewgraph import read_graph
@@ -31,7 +31,7 @@ def run(task: StageTask) -> ConfirmProduct:
     reducer = next(name for name in REDUCERS if task.has(name))
     winner = task.products.of(ChoiceProduct, reducer)
     from_scratch = winner.start_mode == StartMode.SCRATCH
-    model, kept = read_model(task.input(reducer)), "searched"
+    model, kept = read_model(task.input(reducer)), ConfirmedModel.SEARCHED
     if task.settings.model.confirm and not from_scratch:
         # One thread: with a fixed seed COLMAP's mapper is then repeatable to the last bit.
         case = Case(
@@ -55,6 +55,6 @@ def run(task: StageTask) -> ConfirmProduct:
         points3D=stats.points3D,
         mean_reprojection_error_px=stats.mean_reprojection_error_px,
         median_reprojection_error_px=stats.median_reprojection_error_px,
-        start_mode=StartMode.SCRATCH if kept == "confirmed" or from_scratch else winner.start_mode,
+        start_mode=StartMode.SCRATCH if kept == ConfirmedModel.CONFIRMED or from_scratch else winner.start_mode,
         kept=kept,
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import cv2
@@ -18,11 +17,11 @@ from core.flags import Flag
 from core.geometry.lens import Lens, lens_of
 from core.io.frames import images_folder, write_registered
 from core.io.sparse import read_model, write_model
-from core.json_files import JsonObject
+from core.products.adjustment import Adjustment
 from core.products.front import CameraProduct, FramesProduct
 from core.products.search import ExtendProduct
 from core.scene.case import GRAPHS
-from core.sparse.adjust import Adjustment, Align, adjust
+from core.sparse.adjust import Adjusted, Align, adjust
 from core.sparse.extend import MIN_MATCHES, register_rest
 from core.sparse.joining import Attempt, join_rest
 from core.sparse.keypoint_alignment import align_keypoints
@@ -71,16 +70,17 @@ def run(task: StageTask) -> ExtendProduct:
             is_wrong=is_rejected,
         )
     model, dropped = drop_weak_ends(model, n_search) if settings.drop_loose else (model, [])
-    adjustment, said_px = None, spans_said(task.products.of(CameraProduct, "reverify", "camera"))
+    adjustment: Adjustment | None = None
     left: Flag | None = None
+    said_px = spans_said(task.products.of(CameraProduct, "reverify", "camera"))
     if settings.final_adjustment:
-        adjustment = _adjust(task, model, hold_lens=not task.settings.mapper.refine_lens)
-        left = check_left(_lens(adjustment.model).focal_px, said_px)
+        adjusted = _adjust(task, model, hold_lens=not task.settings.mapper.refine_lens)
+        left = check_left(_lens(adjusted.model).focal_px, said_px)
         if left is not None and check_left(_lens(model).focal_px, said_px) is None:
             # The clip does not determine the lens: focal length and distortion trade, and the tracks that agree best
             # agree on a wrong pair of them. The lens of the search has more to speak for it; the flag stays.
-            adjustment = _adjust(task, model, hold_lens=True)
-        model = adjustment.model
+            adjusted = _adjust(task, model, hold_lens=True)
+        model, adjustment = adjusted.model, adjusted.adjustment
     if settings.drop_loose:
         # Counted here, after the filters: until then mismatches hold what nothing holds.
         model, weak_images = drop_weak_images(model)
@@ -99,7 +99,7 @@ def _lens(model: pycolmap.Reconstruction) -> Lens:
     return lens_of(next(iter(model.cameras.values())))
 
 
-def _adjust(task: StageTask, model: pycolmap.Reconstruction, *, hold_lens: bool) -> Adjustment:
+def _adjust(task: StageTask, model: pycolmap.Reconstruction, *, hold_lens: bool) -> Adjusted:
     names = {model.image(image_id).name for image_id in model.reg_image_ids()}
     return adjust(
         model,
@@ -164,31 +164,8 @@ def _product(
         focal_px=lens.focal_px,
         principal_point_px=(lens.cx, lens.cy),
         principal_point_refined=adjustment is not None and adjustment.principal_point.refined,
-        adjustment=None if adjustment is None else _adjustment(adjustment),
+        adjustment=adjustment,
         checks=tuple(checks),
         joined=tuple(attempt.to_dict() for attempt in attempts),
         loose_frames=tuple(dropped),
     )
-
-
-def _adjustment(adjustment: Adjustment) -> JsonObject:
-    point, radial, trimming = adjustment.principal_point, adjustment.radial_terms, adjustment.trimming
-    return {
-        "rounds": adjustment.rounds,
-        "stable": adjustment.stable,
-        "error_before_px": adjustment.error_before_px,
-        "error_after_px": adjustment.error_after_px,
-        "principal_point": {
-            "decision": point.reason,
-            "sigma_px": None if point.sigma_px is None else list(point.sigma_px),
-            "shift_px": None if point.shift_px is None else list(point.shift_px),
-        },
-        "radial_terms": {
-            "decision": radial.reason,
-            "number": radial.number,
-            "first": radial.first,
-            "second": radial.second,
-        },
-        "alignment": None if adjustment.aligned is None else asdict(adjustment.aligned),
-        "trimming": None if trimming is None else {**asdict(trimming), "shift": trimming.shift},
-    }

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from core.errors import NoReconstruction
 from core.matched_pair import MatchedPair
-from core.products.front import FocalProduct, FramesProduct
+from core.products.front import FocalProduct, FocalSource, FramesProduct
 from core.products.search import NoPartProduct, ReverifyProduct
 from core.sparse import view_graph
 from core.sparse.lens import choose_lens, of_model
@@ -33,7 +33,7 @@ def run(task: StageTask) -> ReverifyProduct:
     settings = of_model(task.settings, str(task.args["model"]))
     frames, starts = task.products.of(FramesProduct, "frames"), task.products.parts(FocalProduct, "focal")
     lens = choose_lens(frames, settings.camera, starts)
-    if lens.focal_from != "estimated":
+    if lens.focal_from != FocalSource.ESTIMATED:
         why = task.products.of(NoPartProduct, "reduce_parts").why
         raise NoReconstruction(f"{why}; no perspective lens was found either ({lens.reason})", where="search")
     write_camera(task.out, lens.facts)

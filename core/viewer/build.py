@@ -24,6 +24,8 @@ from core.viewer.scene import SurfaceFacts, ViewerScene
 
 F64 = NDArray[np.float64]
 _SPACING_SAMPLE = 20_000
+_ROTATION_DECIMALS, _TRANSLATION_DIGITS = 7, 7
+"""Of the poses: a point of the surface moves by less than a thousandth of a pixel."""
 
 
 def write_scene(
@@ -86,12 +88,14 @@ def camera_of(views: Views, crop: Crop) -> JsonObject:
 
 
 def poses_of(views: Views) -> dict[int, list[float]]:
-    """cam_from_world of every registered frame by its index, row by row, with nine digits."""
-    matrices = np.concatenate([views.R, views.t[:, :, None]], axis=2).reshape(-1, 12)
-    return {
-        int(index): [float(f"{value:.9g}") for value in matrix]
-        for index, matrix in zip(views.frame_index, matrices, strict=True)
-    }
+    """cam_from_world of every registered frame by its index, row by row.
+
+    Rotations have seven decimals and translations seven digits, as many as the page's single precision holds.
+    """
+    rotations = views.R.round(_ROTATION_DECIMALS) + 0.0  # -0.0 becomes 0.0, which is shorter
+    translations = np.array([float(f"{value:.{_TRANSLATION_DIGITS}g}") for value in views.t.ravel()]).reshape(-1, 3, 1)
+    matrices = np.concatenate([rotations, translations + 0.0], axis=2).reshape(-1, 12)
+    return {int(index): matrix.tolist() for index, matrix in zip(views.frame_index, matrices, strict=True)}
 
 
 def up_of(views: Views) -> list[float] | None:

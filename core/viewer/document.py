@@ -22,6 +22,8 @@ from core.scene.frame import image_name
 from core.viewer.scene import FRAMES, Pictures, ViewerScene, best_frames
 
 SCHEMA_VERSION = 1
+_TIME_DECIMALS = 4
+"""Of the time of a frame in seconds, which the page shows to the hundredth."""
 UNKNOWN_ROW: JsonObject = {"status": "unknown", "reason": "not_computed"}
 
 
@@ -178,7 +180,6 @@ def _sprite(source: ViewerSource) -> JsonObject | None:
 def _frame(row: Item, source: ViewerSource) -> JsonObject:
     index, pictures, scene = int(row["index"]), source.pictures, source.shown_scene
     pose = None if scene is None else scene.poses.get(index)
-    reason = None if pose is not None else _frame_reason(row, source)
     full = scene is not None and index in scene.full
     scale = None if pictures is None else 1 if full else pictures.scales.get(index)
     below = "" if full else _shared(source)
@@ -186,10 +187,10 @@ def _frame(row: Item, source: ViewerSource) -> JsonObject:
         "index": index,
         "video": row.get("video") or 0,
         "source_index": row["source_index"],
-        "time_s": row["time_s"],
+        "time_s": round(row["time_s"], _TIME_DECIMALS),
         "name": image_name(index),
         "registered": pose is not None,
-        "reason": reason,
+        **({} if pose is not None else {"reason": _frame_reason(row, source)}),
         "cam_from_world": pose,
         "picture": None if scale is None else f"{below}{FRAMES}/{image_name(index)}",
         "picture_scale": scale,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from cli.main import main
 from core.annotations.load import load_annotations
 from core.annotations.placed import place
 from core.video.probe import probe_video
+from core.video.table import FrameTable
 from tests.inputs import INPUTS
 
 ROOT = Path(__file__).parents[2]
@@ -29,9 +31,15 @@ def called(capsys: pytest.CaptureFixture[str], *words: str | Path, expect: int =
     return captured.out if expect == 0 else captured.err
 
 
+@cache
+def _sample() -> FrameTable:
+    """Frames of the sample, decoded once for all tests."""
+    return probe_video(VIDEO)
+
+
 def placed_of(path: Path) -> list[Any]:
     """What matters of every detection, and the frames looked at."""
-    table = probe_video(VIDEO)
+    table = _sample()
     placed = place(load_annotations(path, (table.info.width, table.info.height)), table)
     rows = [(d.source_index, d.label, d.score, d.box, d.polygon, d.track_id) for d in placed.detections]
     return [*rows, placed.looked_at, dict(sorted(placed.masks.items()))]

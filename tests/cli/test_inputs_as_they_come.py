@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import av
 import pytest
 from PIL import Image
 
@@ -62,13 +64,26 @@ def test_probe_and_check_say_that_a_film_is_interlaced(capsys: pytest.CaptureFix
     assert "video: interlaced: 48 of 48 frames" in said(capsys, "check", str(tmp_path / "a.json"), "s480i.mp4")
 
 
+def beginning(video: Path, frames: int, to: Path) -> Path:
+    """The first frames of a film whose pictures are coded in the order in which they are shown, as they are coded."""
+    with av.open(str(video)) as whole, av.open(str(to), "w") as cut:
+        film = whole.streams.video[0]
+        copy = cut.add_stream_from_template(film)
+        for packet in islice(whole.demux(film), frames):
+            packet.stream = copy
+            cut.mux(packet)
+    return to
+
+
 @pytest.mark.parametrize(
     ("video", "frames", "rate"),
-    [("gpb1080.mp4", 900, "30 frames/s"), ("m96.avi", 96, "12 frames/s"), ("m96_drop15.avi", 90, "frames/s")],
+    [("gpb1080.mp4", 60, "30 frames/s"), ("m96.avi", 96, "12 frames/s"), ("m96_drop15.avi", 90, "frames/s")],
 )
 def test_probe_has_nothing_to_say_of_ordinary_films(
-    video: str, frames: int, rate: str, capsys: pytest.CaptureFixture[str]
+    video: str, frames: int, rate: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
+    if video == "gpb1080.mp4":  # all its 900 frames of 1080p take a quarter of a minute to decode
+        video = str(beginning(INPUTS / video, frames, tmp_path / video))
     text = said(capsys, "probe", video)
     assert text.splitlines()[0].endswith(f", {frames} frames")
     assert f" {rate} on average\n" in text

@@ -64,7 +64,12 @@ class Workplace:
 
 @pytest.fixture
 def place(tmp_path: Path) -> Workplace:
-    made = Workplace(tmp_path)
+    return made_below(tmp_path)
+
+
+def made_below(root: Path) -> Workplace:
+    """A workplace in which nothing has run."""
+    made = Workplace(root)
     made.video.parent.mkdir()
     made.video.write_bytes(b"a video" * 100)
     return made

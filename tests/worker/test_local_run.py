@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import threading
 import time
 from pathlib import Path
@@ -13,11 +14,30 @@ import pytest
 from core.errors import BadInput
 from core.settings import make_settings
 from core.videos import Recording
-from tests.worker.conftest import Workplace
+from tests.worker.conftest import Workplace, made_below
 from tests.worker.fake_stages import GRAPH
 from worker.local_run import Names, run_inspection
 
 ALL = ["join", "last", "part/000", "part/001", "split"]
+ANOTHER_LAST = {"timeline.radius_fraction": 0.05}
+"""Options that `last` alone reads."""
+
+
+@pytest.fixture(scope="module")
+def template(tmp_path_factory: pytest.TempPathFactory) -> Workplace:
+    """A workplace whose run has ended: five processes that the tests need not start once more each."""
+    made = made_below(tmp_path_factory.mktemp("template"))
+    assert made.run().state == "succeeded"
+    return made
+
+
+@pytest.fixture
+def ended(template: Workplace, tmp_path: Path) -> Workplace:
+    """A copy of a workplace whose run has ended; its journal counts from there."""
+    shutil.copytree(template.root, tmp_path, dirs_exist_ok=True)
+    copy = Workplace(tmp_path)
+    assert copy.started() == ALL
+    return copy
 
 
 def test_a_run_computes_everything_once_and_the_next_nothing(place: Workplace) -> None:
@@ -72,58 +92,48 @@ def test_fanned_out_stages_get_one_thread_and_others_what_is_set(place: Workplac
     ],
 )
 def test_changed_parameters_recompute_only_what_they_touch(
-    place: Workplace, options: dict[str, float], again: list[str]
+    ended: Workplace, options: dict[str, float], again: list[str]
 ) -> None:
-    place.run()
-    place.started()
-    place.run(options)
-    assert place.started() == sorted(again)
-    place.run()
-    assert place.started() == []
+    ended.run(options)
+    assert ended.started() == sorted(again)
+    ended.run()
+    assert ended.started() == []
 
 
-def test_the_callers_names_stand_beside_the_result_and_cost_no_work(place: Workplace) -> None:
-    place.run(names=Names("stage 2", "WO-1187"))
-    place.started()
+def test_the_callers_names_stand_beside_the_result_and_cost_no_work(ended: Workplace) -> None:
     for label in ("stage 2", "stage 3"):
-        place.run(names=Names(label, "WO-1187", {"module": label}))
-        summary = json.loads((place.out / "summary.json").read_text())
+        ended.run(names=Names(label, "WO-1187", {"module": label}))
+        summary = json.loads((ended.out / "summary.json").read_text())
         assert (summary["label"], summary["external_id"]) == (label, "WO-1187")
         assert summary["metadata"] == {"module": label}
-    assert place.started() == []
+    assert ended.started() == []
 
 
-def test_from_stage_deletes_that_stage_and_all_that_follow(place: Workplace) -> None:
-    place.run()
-    place.started()
-    outcome = place.run(from_stage="join")
-    assert place.started() == ["join", "last"]
+def test_from_stage_deletes_that_stage_and_all_that_follow(ended: Workplace) -> None:
+    outcome = ended.run(from_stage="join")
+    assert ended.started() == ["join", "last"]
     assert (outcome.computed, outcome.reused) == (2, 3)
     with pytest.raises(BadInput, match="unknown stage 'mesh'"):
-        place.run(from_stage="mesh")
+        ended.run(from_stage="mesh")
 
 
-def test_another_input_is_refused_and_forced(place: Workplace) -> None:
-    place.run()
-    place.started()
-    place.video.write_bytes(b"another video")
+def test_another_input_is_refused_and_forced(ended: Workplace) -> None:
+    ended.video.write_bytes(b"another video")
     with pytest.raises(BadInput) as caught:
-        place.run()
+        ended.run()
     assert caught.value.code == "another_input"
-    assert place.started() == []
-    assert place.run(force=True).state == "succeeded"
-    assert place.started() == ALL
+    assert ended.started() == []
+    assert ended.run(force=True).state == "succeeded"
+    assert ended.started() == ALL
 
 
-def test_other_annotations_are_another_input_but_share_results(place: Workplace, tmp_path: Path) -> None:
-    place.run()
-    place.started()
+def test_other_annotations_are_another_input_but_share_results(ended: Workplace, tmp_path: Path) -> None:
     notes = tmp_path / "notes.json"
     notes.write_text("{}")
     with pytest.raises(BadInput):
-        place.run(annotations=notes)
-    place.run(annotations=notes, force=True)
-    assert place.started() == ["last"]
+        ended.run(annotations=notes)
+    ended.run(annotations=notes, force=True)
+    assert ended.started() == ["last"]
 
 
 def test_a_folder_may_have_any_name(place: Workplace, tmp_path: Path) -> None:
@@ -169,7 +179,7 @@ def test_a_missing_video_is_bad_input(place: Workplace) -> None:
 
 
 def test_two_runs_in_one_folder_exclude_each_other(place: Workplace) -> None:
-    place.control(split={"sleep_s": 2.0})
+    place.control(split={"sleep_s": 1.0})
     first = threading.Thread(target=place.run)
     first.start()
     while not any(event.kind == "started" for event in place.events):
@@ -265,9 +275,9 @@ def test_what_a_library_cannot_do_in_an_optional_part_costs_that_part_alone(plac
     assert "join" in place.started()
 
 
-def test_a_failure_with_something_to_serve_is_partial(place: Workplace) -> None:
-    place.control(last={"raise": "stage"})
-    outcome = place.run()
+def test_a_failure_with_something_to_serve_is_partial(ended: Workplace) -> None:
+    ended.control(last={"raise": "stage"})
+    outcome = ended.run(ANOTHER_LAST)
     assert (outcome.state, outcome.failed_stage) == ("partial", "last")
 
 
@@ -281,14 +291,14 @@ def test_a_task_above_its_memory_limit_is_ended_as_oom(place: Workplace, monkeyp
     assert [(event.key, "300 MiB" in event.message) for event in failed] == [("part/001", True)]
 
 
-def test_a_task_above_its_time_limit_is_ended_as_timeout(place: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_task_above_its_time_limit_is_ended_as_timeout(ended: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BLADEATLAS_TASK_SECONDS", "2.5")
-    place.control(last={"sleep_s": 30, "deaf": True})
-    outcome = place.run()
+    ended.control(last={"sleep_s": 30, "deaf": True})
+    outcome = ended.run(ANOTHER_LAST)
     assert (outcome.state, outcome.failed_stage) == ("partial", "last")
     assert outcome.error is not None
     assert (outcome.error.code, outcome.error.message) == ("timeout", "the task ran longer than its limit of 2.5 s")
-    assert place.started().count("last") == 1
+    assert ended.started() == ["last"]
 
 
 @pytest.mark.parametrize(
@@ -301,7 +311,7 @@ def test_a_task_above_its_time_limit_is_ended_as_timeout(place: Workplace, monke
     ],
 )
 def test_a_task_beyond_a_limit_of_the_kernel_fails_once_and_says_which(
-    place: Workplace,
+    ended: Workplace,
     monkeypatch: pytest.MonkeyPatch,
     variable: str,
     value: int,
@@ -310,36 +320,33 @@ def test_a_task_beyond_a_limit_of_the_kernel_fails_once_and_says_which(
     words: str,
 ) -> None:
     monkeypatch.setenv(f"BLADEATLAS_{variable}", str(value))
-    place.control(last=wish)
-    outcome = place.run()
+    ended.control(last=wish)
+    outcome = ended.run(ANOTHER_LAST)
     assert (outcome.state, outcome.failed_stage) == ("partial", "last")
     assert outcome.error is not None
     assert outcome.error.code == code
     assert words in outcome.error.message
-    assert place.started().count("last") == 1
+    assert ended.started() == ["last"]
 
 
-def test_results_whose_files_vanished_are_made_again(place: Workplace) -> None:
-    place.run()
-    place.started()
-    victim = next((place.out / ".bladeatlas/results/part").glob("*/model/points.bin"))
+def test_results_whose_files_vanished_are_made_again(ended: Workplace) -> None:
+    victim = next((ended.out / ".bladeatlas/results/part").glob("*/model/points.bin"))
     victim.write_bytes(victim.read_bytes()[:-1])
-    place.run()
-    assert len(place.started()) == 1
+    ended.run()
+    assert len(ended.started()) == 1
 
 
-def test_a_lost_plan_is_rebuilt_from_the_results_on_disk(place: Workplace) -> None:
-    place.run()
-    place.started()
-    for path in (place.out / ".bladeatlas").glob("plan.db*"):
+def test_a_lost_plan_is_rebuilt_from_the_results_on_disk(ended: Workplace) -> None:
+    for path in (ended.out / ".bladeatlas").glob("plan.db*"):
         path.unlink()
-    assert place.run(force=True).reused == 5
-    assert place.started() == []
+    assert ended.run(force=True).reused == 5
+    assert ended.started() == []
 
 
-def test_old_results_are_cleaned_up_but_for_the_previous_parameters(place: Workplace) -> None:
-    for radius in (0.02, 0.03, 0.04, 0.05):
-        place.run({"timeline.radius_fraction": radius})
-    results = place.out / ".bladeatlas" / "results"
+def test_old_results_are_cleaned_up_but_for_the_previous_parameters(ended: Workplace) -> None:
+    for radius in (0.03, 0.04, 0.05):
+        ended.run({"timeline.radius_fraction": radius})
+    results = ended.out / ".bladeatlas" / "results"
+    assert ended.started() == ["last"] * 3
     assert len(list(results.glob("last/*"))) == 2
     assert len(list(results.glob("part/*"))) == 2

@@ -7,6 +7,7 @@ import importlib
 import inspect
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from types import UnionType
 from typing import get_args, get_type_hints
@@ -17,8 +18,16 @@ import core
 from core.errors import StageFailed
 from core.flags import Flag, Severity
 from core.products.contract import Product, Products, read_product
-from core.products.front import BridgeProduct, FramesProduct, ProbeProduct, VideoLength
-from core.products.search import NoPartProduct, PassedProduct, Ranked, ReducerProduct, ReverifyProduct
+from core.products.front import BridgeProduct, CameraProduct, FramesProduct, ProbeProduct, VideoLength
+from core.products.search import (
+    ConfirmProduct,
+    ExtendProduct,
+    NoPartProduct,
+    PassedProduct,
+    Ranked,
+    ReducerProduct,
+    ReverifyProduct,
+)
 from core.stage_specs import STAGES
 from tests.core.making_products import facts_of
 
@@ -63,6 +72,39 @@ def test_the_lens_stands_before_the_counts_of_its_graph() -> None:
     assert list(facts_of(ReverifyProduct))[-1] == "median_triangulation_angle_deg"
 
 
+ADJUSTED = """{"rounds": 2, "stable": false, "error_before_px": 0.6, "error_after_px": 0.5,
+ "principal_point": {"decision": "uncertain", "sigma_px": [3.5, 2.0], "shift_px": [1.0, -4.0]},
+ "radial_terms": {"decision": "significant", "number": 1, "first": 3.25, "second": null},
+ "alignment": {"observations": 900, "aligned": 850, "median_shift_px": 0.25},
+ "trimming": {"rounds": 9, "kept": 400, "median_error_px": 0.25, "focal_before_px": 400.0, "focal_after_px": 410.0,
+ "shift": 0.02499999999999991}}"""
+"""As results of 0.2.0 hold it."""
+SIMPLE = """{"rounds": 3, "stable": true, "error_before_px": 0.6, "error_after_px": 0.5,
+ "principal_point": {"decision": "off", "sigma_px": null, "shift_px": null},
+ "radial_terms": {"decision": "off", "number": 2, "first": null, "second": null},
+ "alignment": null, "trimming": null}"""
+
+
+@pytest.mark.parametrize("text", [ADJUSTED, SIMPLE, "null"])
+def test_the_final_adjustment_comes_back_as_it_is_stored(text: str) -> None:
+    stored = {**facts_of(ExtendProduct), "adjustment": json.loads(text)}
+    product = read_product(ExtendProduct, stored, "extend")
+    assert json.dumps(product.facts) == json.dumps(stored)
+    adjustment = product.adjustment
+    assert (adjustment is None) == (text == "null")
+    if text == ADJUSTED:
+        assert adjustment is not None
+        assert adjustment.trimming is not None
+        assert adjustment.trimming.shift == 410.0 / 400.0 - 1.0
+        assert not adjustment.principal_point.refined
+
+
+@pytest.mark.parametrize(("kind", "member"), [(CameraProduct, "focal_from"), (ConfirmProduct, "kept")])
+def test_a_state_that_is_not_declared_is_refused(kind: type[Product], member: str) -> None:
+    with pytest.raises(StageFailed, match=f"the facts of x cannot be used: {member}: Input should be"):
+        read_product(kind, {**facts_of(kind), member: "guessed"}, "x")
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -104,10 +146,12 @@ def test_products_are_found_by_key_and_by_stage() -> None:
         products.of(ReducerProduct, "x", "nothing")
 
 
-def _sources() -> Iterator[tuple[Path, ast.Module]]:
-    for package in ("core", "store", "worker", "api", "cli", "bench"):
-        for path in (ROOT / package).rglob("*.py"):
-            yield path, ast.parse(path.read_text(encoding="utf-8"))
+@cache
+def _sources() -> list[tuple[Path, ast.Module]]:
+    paths = [
+        path for name in ("core", "store", "worker", "api", "cli", "bench") for path in (ROOT / name).rglob("*.py")
+    ]
+    return [(path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths]
 
 
 def _is_facts(node: ast.AST) -> bool:

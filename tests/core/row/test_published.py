@@ -21,6 +21,7 @@ from core.io.timeline import read_defects
 from core.report.csv_form import read_csv
 from core.report.limits import limits_document
 from core.report.tables import write_csv
+from core.row import estimate
 from core.row.estimate import describe_row
 from core.row.model import NoRow, UnknownRow
 from core.row.overlap import Hypothesis
@@ -66,7 +67,10 @@ def published(folder: Path) -> Path:
     return folder
 
 
-def test_row_of_a_published_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_row_of_a_published_result(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(estimate, "FIT_POINTS", 3000)  # quicker; `test_estimate` asks how well all of them fit
     folder = published(tmp_path / "result")
     before = json.loads((folder / "mapping" / "detections.json").read_text())
     assert main(["row", str(folder), "--set", "count=64"]) == 0

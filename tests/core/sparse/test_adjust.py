@@ -7,6 +7,7 @@ import pycolmap
 import pytest
 
 from core.checks.stats import model_stats
+from core.products.adjustment import LensDecision
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust, adjustment_options
 from core.sparse.cases import Case
@@ -59,12 +60,12 @@ def test_a_disturbed_model_comes_back_and_the_input_stays(
     start = disturbed(model, points_su=0.03)
     before = model_stats(start).mean_reprojection_error_px
     result = adjust(start, cache, OPTIONS, refine_principal_point=False)
-    assert result.error_before_px == pytest.approx(before)
-    assert result.error_after_px < 0.5 * before
-    assert result.stable
+    assert result.adjustment.error_before_px == pytest.approx(before)
+    assert result.adjustment.error_after_px < 0.5 * before
+    assert result.adjustment.stable
     assert center_errors(result.model, scene).max() < 0.01
     assert model_stats(start).mean_reprojection_error_px == pytest.approx(before)
-    assert (result.principal_point.refined, result.principal_point.reason) == (False, "off")
+    assert result.adjustment.principal_point.decision == LensDecision.OFF
     assert np.array(result.model.camera(1).params)[2:4].tolist() == [WIDTH / 2, HEIGHT / 2]
 
 
@@ -84,7 +85,7 @@ def test_a_point_at_infinity_is_removed_before_errors_are_averaged(
     start = pycolmap.Reconstruction(model)
     lost = min(start.point3D_ids())
     start.point3D(lost).xyz = np.array([1e150, 1e150, 1e150])
-    assert adjust(start, cache, OPTIONS, refine_principal_point=False).error_after_px < 1.0
+    assert adjust(start, cache, OPTIONS, refine_principal_point=False).adjustment.error_after_px < 1.0
 
 
 def test_a_wrong_principal_point_is_found_again(
@@ -92,23 +93,23 @@ def test_a_wrong_principal_point_is_found_again(
 ) -> None:
     start = adjust(disturbed(model, shift_px=(14.0, -9.0)), cache, OPTIONS, refine_principal_point=False).model
     result = adjust(start, cache, OPTIONS, refine_principal_point=True)
-    assert (result.principal_point.refined, result.principal_point.reason) == (True, "kept")
+    assert result.adjustment.principal_point.decision == LensDecision.KEPT
     found = np.array(result.model.camera(1).params)[2:4]
     assert found == pytest.approx([WIDTH / 2, HEIGHT / 2], abs=3.0)
-    assert result.principal_point.sigma_px is not None
-    assert max(result.principal_point.sigma_px) < 3.0
-    assert result.error_after_px <= result.error_before_px
+    assert result.adjustment.principal_point.sigma_px is not None
+    assert max(result.adjustment.principal_point.sigma_px) < 3.0
+    assert result.adjustment.error_after_px <= result.adjustment.error_before_px
 
 
 def test_a_right_principal_point_stays_exactly(model: pycolmap.Reconstruction, cache: pycolmap.DatabaseCache) -> None:
     result = adjust(model, cache, OPTIONS, refine_principal_point=True)
-    assert result.principal_point.reason == "insignificant"
+    assert result.adjustment.principal_point.decision == LensDecision.INSIGNIFICANT
     assert np.array(result.model.camera(1).params)[2:4].tolist() == [WIDTH / 2, HEIGHT / 2]
 
 
 def test_few_images_do_not_determine_a_principal_point(graph: Path) -> None:
     few = model_of(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0))
-    assert judge_principal_point(try_lens(few, adjustment_options(True, 1.0, 1))).reason == "few_images"
+    assert judge_principal_point(try_lens(few, adjustment_options(True, 1.0, 1))).decision == LensDecision.FEW_IMAGES
 
 
 def test_mismatches_move_cameras_less_when_they_count_less(
@@ -129,4 +130,4 @@ def test_mismatches_move_cameras_less_when_they_count_less(
 def test_a_narrow_motion_does_not_determine_a_principal_point(graph: Path) -> None:
     narrow = model_of(Case(graph, 0, 14, SETTINGS, 0))
     found = judge_principal_point(try_lens(narrow, adjustment_options(True, 0.0, 1)))
-    assert (found.refined, found.reason) == (False, "uncertain")
+    assert (found.refined, found.decision) == (False, LensDecision.UNCERTAIN)

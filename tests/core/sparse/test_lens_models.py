@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from core.geometry.lens import LensModel, lens_of, make_lens
+from core.products.adjustment import LensDecision
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust
 from core.sparse.cases import Case
@@ -50,7 +51,8 @@ def test_a_held_lens_stays_as_it_was_told_and_the_cameras_follow(model: str, tmp
         hold_lens=True,
     )
     assert (done.model.camera(1).model_name, list(done.model.camera(1).params)) == (model, TRUE[model])
-    assert (done.principal_point.reason, done.radial_terms.reason) == ("off", "off")
+    asked = done.adjustment.principal_point.decision, done.adjustment.radial_terms.decision
+    assert asked == (LensDecision.OFF, LensDecision.OFF)
     assert done.model.num_reg_images() == FRAMES
     assert np.median(center_errors(done.model, scene)) < 0.004
 

@@ -6,6 +6,7 @@ import numpy as np
 import pycolmap
 import pytest
 
+from core.products.adjustment import LensDecision, RadialTerms
 from core.settings.groups import MapperSettings
 from core.sparse.adjust import adjust, adjustment_options
 from core.sparse.cases import Case
@@ -63,7 +64,7 @@ def trial_of(model: pycolmap.Reconstruction, **more: bool) -> Trial:
 
 def test_an_equidistant_lens_is_not_given_radial_terms(mapped: pycolmap.Reconstruction) -> None:
     found = judge_radial_terms(trial_of(seen_through(mapped, 0.0)))
-    assert (found.number, found.reason) == (0, "insignificant")
+    assert (found.number, found.decision) == (0, LensDecision.INSIGNIFICANT)
     assert found.first is not None
     assert found.second is not None
     assert 0.0 < found.first < MIN_FIRST_SIGMAS
@@ -74,7 +75,7 @@ def test_an_equidistant_lens_is_not_given_radial_terms(mapped: pycolmap.Reconstr
 def test_a_lens_with_radial_terms_keeps_them(mapped: pycolmap.Reconstruction, k1: float) -> None:
     trial = trial_of(seen_through(mapped, k1))
     found = judge_radial_terms(trial)
-    assert (found.number > 0, found.reason) == (True, "significant")
+    assert (found.number > 0, found.decision) == (True, LensDecision.SIGNIFICANT)
     assert found.first is not None
     assert trial.camera is not None
     assert found.first > MIN_SHIFT_SIGMAS > MIN_FIRST_SIGMAS
@@ -100,7 +101,7 @@ def test_terms_are_judged_one_by_one(k1: float, k2: float, number: int) -> None:
     camera = pycolmap.Camera(model="RADIAL_FISHEYE", width=320, height=240, params=[200.0, 160.0, 120.0, k1, k2])
     covariance = np.zeros((5, 5))
     covariance[3:, 3:] = 0.012**2 * np.array([[1.0, 0.9], [0.9, 1.0]])
-    found = judge_radial_terms(Trial("", camera, np.array(camera.params), covariance))
+    found = judge_radial_terms(Trial(None, camera, np.array(camera.params), covariance))
     assert found.number == number
     assert found.second == pytest.approx(abs(k2) / 0.012)
     assert found.first == pytest.approx(abs(k1 - 0.9 * k2) / (0.012 * np.sqrt(1 - 0.81)))
@@ -127,9 +128,9 @@ def test_a_trial_changes_nothing(mapped: pycolmap.Reconstruction) -> None:
 def test_too_few_images_say_nothing(graph: Path) -> None:
     few = model_of(Case(graph, 0, MIN_IMAGES - 1, SETTINGS, 0))
     trial = trial_of(few)
-    assert judge_principal_point(trial).reason == "few_images"
+    assert judge_principal_point(trial).decision == LensDecision.FEW_IMAGES
     radial = judge_radial_terms(trial)
-    assert (radial.number, radial.reason, radial.first, radial.second) == (2, "few_images", None, None)
+    assert radial == RadialTerms(decision=LensDecision.FEW_IMAGES, number=2)
 
 
 def test_the_adjustment_does_without_terms_that_nothing_asks_for(graph: Path) -> None:
@@ -138,10 +139,11 @@ def test_the_adjustment_does_without_terms_that_nothing_asks_for(graph: Path) ->
     options = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
     for judged in (True, False):
         done = adjust(start, cache, options, refine_principal_point=False, trim_tracks=True, judge_radial=judged)
-        assert done.radial_terms.reason == ("insignificant" if judged else "off")
+        decision = done.adjustment.radial_terms.decision
+        assert decision == (LensDecision.INSIGNIFICANT if judged else LensDecision.OFF)
         assert (done.model.camera(1).params[4:] == 0.0).all() == judged
         assert done.model.camera(1).model.name == "OPENCV_FISHEYE"
         assert done.model.camera(1).mean_focal_length() == pytest.approx(FOCAL, rel=0.005)
     # Without a choice of tracks there is nothing to judge by.
     whole = adjust(start, cache, options, refine_principal_point=False, judge_radial=True)
-    assert whole.radial_terms.reason == "off"
+    assert whole.adjustment.radial_terms.decision == LensDecision.OFF

@@ -11,7 +11,8 @@ export interface Frame {
   readonly time_s: number;
   readonly name: string;
   readonly registered: boolean;
-  readonly reason: string | null;
+  /** Of a frame that is not registered. */
+  readonly reason?: string | null;
   /** Row-major 3x4, COLMAP's. */
   readonly cam_from_world: readonly number[] | null;
   readonly picture: string | null;

@@ -23,6 +23,8 @@ import pytest
 from scripts.locks import DEVELOPER, RUNTIME, closure, declared, normal
 from tests.composition import ROOT
 
+pytestmark = pytest.mark.slow
+
 INSTRUCTION = re.compile(r"^(FROM|RUN|WORKDIR|ARG|COPY|USER|ENV|VOLUME|EXPOSE|CMD)\s+(.*)$")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 STEPS = ["system", "torch", "packages", "project"]

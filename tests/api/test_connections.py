@@ -20,6 +20,8 @@ from api.connections import config_of, listeners_on
 from core.errors import BadInput
 from tests.api.conftest import Backend, Server, wait_until
 
+pytestmark = pytest.mark.slow
+
 _HALF = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "
 
 

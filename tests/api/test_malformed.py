@@ -16,6 +16,8 @@ from tests.api.test_submit import form, leftovers, post
 from tests.api.test_uploads import begin
 from tests.damage import damaged, damaged_videos
 
+pytestmark = pytest.mark.slow
+
 _FORM = form(
     (
         'Content-Disposition: form-data; name="video"; filename="../../../etc/v.mp4"\r\nContent-Type: text/html',

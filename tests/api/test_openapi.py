@@ -19,6 +19,8 @@ from store.keys import Keys
 from tests.api.conftest import Backend
 from tests.api.test_results import ROWS
 
+pytestmark = pytest.mark.slow
+
 _METHODS = ("get", "post", "patch", "delete", "head", "options")
 
 

@@ -23,6 +23,8 @@ from tests.api.conftest import Backend
 from tests.databases import BOTH, database_url
 from tests.store.small_plan import GRAPH
 
+pytestmark = pytest.mark.slow
+
 ROWS = 60_000
 READERS = 100
 _FILL = """

@@ -23,6 +23,8 @@ from store.plan import Plan
 from store.records import InputFiles, Result
 from tests.databases import BOTH, database_url, put_new_tables
 
+pytestmark = pytest.mark.slow
+
 SPLIT, PART, JOIN, CONFIRM = 10.0, 20.0, 5.0, 1.0
 ALONE = SPLIT + 4 * PART + JOIN + CONFIRM
 

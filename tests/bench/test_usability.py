@@ -14,6 +14,8 @@ from core.study.truth import UNKNOWN, Task, answers
 from tests.core.making_results import opened
 from tests.core.study.making_scenes import result_with_blades
 
+pytestmark = pytest.mark.slow
+
 LONGEST_S = {Task.COUNT: 3.0}
 """Of model time; every other question has five seconds."""
 

@@ -18,6 +18,8 @@ from core.video.probe import probe_video
 from core.video.table import FrameTable
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 FOREIGN = INPUTS / "foreign"
 VIDEO = ROOT / "samples" / "turbine.mp4"

@@ -15,6 +15,8 @@ from cli.main import main
 from tests.core.making_videos import picture
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 
 def said(capsys: pytest.CaptureFixture[str], *words: str, expect: int = 0) -> str:
     code = main([str(INPUTS / word) if (INPUTS / word).is_file() else word for word in words])

@@ -36,6 +36,8 @@ from tests.core.making_plates import NEAR, detection
 from tests.core.making_products import facts_of
 from tests.core.making_rows import run_frames
 
+pytestmark = pytest.mark.slow
+
 A, B = (-0.8, 0.2, NEAR), (-1.4, -0.3, NEAR)
 FRAMES = range(8)
 

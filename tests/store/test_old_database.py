@@ -19,6 +19,8 @@ from store.models import Base
 from tests.databases import BOTH, database_url
 from tests.old_release import REVISION, Rows, rows_of, unpack, write_rows
 
+pytestmark = pytest.mark.slow
+
 ACCOUNTS = "0006"
 """The revision that gave keys accounts."""
 

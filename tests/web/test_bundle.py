@@ -9,6 +9,8 @@ import pytest
 
 from core.viewer.deliver import bundle, study_bundle
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 UNREACHED = (
     "ENOTFOUND",

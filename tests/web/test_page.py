@@ -21,7 +21,7 @@ from tests.web.making_page import FAR_FINDING, FRAMES, HOSTILE, NEAR_FINDING, NE
 from tests.web.opening import READY_S, Open, Opened, faults
 
 pytest.importorskip("playwright.sync_api")
-pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
+pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell"), pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

@@ -34,7 +34,7 @@ from tests.web.making_page import FAR_FINDING, HOSTILE, NEAR_FINDING, write_resu
 from tests.web.opening import faults
 
 pytest.importorskip("playwright.sync_api")
-pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
+pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell"), pytest.mark.slow]
 
 READY_MS = 40_000
 

@@ -20,7 +20,7 @@ from tests.web.making_page import HOSTILE
 from tests.web.opening import Open, faults
 
 sync_api = pytest.importorskip("playwright.sync_api")
-pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
+pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell"), pytest.mark.slow]
 
 PARTICIPANT = 2
 """Of the second group: the page on scene A, then the gallery on scene B."""

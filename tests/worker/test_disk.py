@@ -16,6 +16,8 @@ from tests.worker.disks import fill, mounted
 from tests.worker.fake_stages import GRAPH
 from worker.local_run import run_inspection
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Iterator[Path]:

@@ -27,6 +27,8 @@ from worker.loop import LocalRunners
 from worker.results import ResultFolders
 from worker.runner import TaskRunner
 
+pytestmark = pytest.mark.slow
+
 
 @dataclass
 class Notes:

@@ -18,6 +18,8 @@ from tests.worker.conftest import Workplace, made_below
 from tests.worker.fake_stages import GRAPH
 from worker.local_run import Names, run_inspection
 
+pytestmark = pytest.mark.slow
+
 ALL = ["join", "last", "part/000", "part/001", "split"]
 ANOTHER_LAST = {"timeline.radius_fraction": 0.05}
 """Options that `last` alone reads."""

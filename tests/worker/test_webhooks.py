@@ -34,6 +34,8 @@ from tests.store.small_plan import GRAPH
 from worker.loop import WorkerService
 from worker.webhooks import WebhookSender
 
+pytestmark = pytest.mark.slow
+
 HERE = Outbound([ip_network("127.0.0.1/32")])
 OWNER = "default"
 

@@ -28,6 +28,8 @@ from core.stages import geometric as geometric_stage
 from core.surface.ply import read_mesh
 from tests.core.dense.conftest import OPTIONS, Undistorted
 
+pytestmark = pytest.mark.slow
+
 Chain = tuple[
     dict[str, Path],
     dict[str, Facts],

@@ -29,6 +29,8 @@ from core.surface.ply import Mesh
 from tests.core.making_blades import PITCH_RAD, SCENE, blade_of, blades, walk
 from tests.core.making_row_surfaces import read_surface
 
+pytestmark = pytest.mark.slow
+
 TRUE_AXIS = Axis(np.array([0.0, 0.0, 1.0]), np.zeros(3))
 PITCH_WITHIN = 0.005
 AXIS_WITHIN_DEG = 0.5

@@ -37,6 +37,8 @@ from core.surface.ply import write_mesh
 from tests.core.making_blades import PITCH_RAD, SCENE, blades, walk
 from tests.core.making_rows import defect, mapped, unplaced
 
+pytestmark = pytest.mark.slow
+
 TRUE_BLADES = (0, 1, 2, 2)
 SPANS = (0.3, 0.5, 0.7, 0.5)
 

@@ -25,6 +25,8 @@ from tests.core.sparse.scene import (
     write_graph,
 )
 
+pytestmark = pytest.mark.slow
+
 Tried = tuple[float, Scene, pycolmap.Reconstruction, pycolmap.DatabaseCache, dict[bool, Adjusted]]
 
 SETTINGS = MapperSettings(search_tracks=0)

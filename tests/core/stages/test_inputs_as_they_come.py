@@ -26,6 +26,8 @@ from tests.core.making_films import ffmpeg_pixels
 from tests.core.test_bad_input import run_stages
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 DETECTION = {"detections": [{"label": "dent", "score": 0.9, "bbox": [0.2, 0.2, 0.4, 0.4]}]}
 
 

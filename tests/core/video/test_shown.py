@@ -20,6 +20,8 @@ from tests.core.making_films import SAMPLE, ffmpeg_pixels, ffprobe_frames, film
 from tests.core.making_videos import set_display_matrix
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 SQUARE = "scale=iw*sar:ih,setsar=1"
 JOINED = "bwdif=mode=send_frame"
 SMALL_SIZE = (160, 120)

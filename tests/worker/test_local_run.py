@@ -300,7 +300,9 @@ def test_a_task_above_its_time_limit_is_ended_as_timeout(ended: Workplace, monke
     assert (outcome.state, outcome.failed_stage) == ("partial", "last")
     assert outcome.error is not None
     assert (outcome.error.code, outcome.error.message) == ("timeout", "the task ran longer than its limit of 2.5 s")
-    assert ended.started() == ["last"]
+    # On a busy machine the limit passes while the process still loads its modules; it is not tried again either way.
+    assert ended.started() in ([], ["last"])
+    assert not [event for event in ended.events if event.kind == "retry"]
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,8 @@ from core.json_files import JsonObject
 from core.report.limits import limit_text, limits_document, limits_of
 from core.review.state import Review, Reviewed
 from core.scene.defect import MODEL_UNIT, DefectRecord
-from core.settings.limits import MM_PER_INCH, Limit
+from core.scene.size import MM_PER_INCH
+from core.settings.limits import Limit
 
 SCHEMA_VERSION = 1
 _DAY = len("YYYY-MM-DD")

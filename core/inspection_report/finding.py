@@ -11,8 +11,7 @@ from core.review.state import Review, Reviewed, ReviewedFinding
 from core.review.target import Target
 from core.review.words import ReviewState, TargetKind
 from core.scene.defect import MODEL_UNIT
-from core.scene.size import LengthUnit
-from core.settings.limits import MM_PER_INCH
+from core.scene.size import MM_PER_INCH, LengthUnit
 
 UNKNOWN = "unknown"
 UNSCALED = "unscaled"

@@ -11,9 +11,8 @@ from pathlib import Path
 
 from core.errors import BadInput
 from core.flags import Flag, Verdict, in_order, verdict_by
-from core.io.sparse import open_model
 from core.json_files import JsonObject, read_json, replace_file, write_json
-from core.mapping.scene import oriented
+from core.mapping.load import read_surface
 from core.outputs import (
     CONFIDENCE,
     DEFECT_GLB,
@@ -43,7 +42,6 @@ from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import DetectionRow
 from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS
 from core.scene.size import Scale, scale_fields
-from core.scene.views import views_of
 from core.settings.limits import Limit
 from core.settings.row import RowSettings
 from core.surface.colored_glb import write_glb
@@ -163,8 +161,7 @@ def _row_of(folder: Path, model: int, told: RowSettings, old: Scale | None) -> t
     same = ChangeOfScale(old, old)
     if not (folder / SURFACE).is_file() or not (folder / SPARSE).is_dir():
         return NoRow(UnknownRow.NO_SURFACE), same
-    views = views_of(open_model(folder / SPARSE))
-    mesh = oriented(read_mesh(folder / SURFACE), views)
+    mesh, views = read_surface(folder / SPARSE, folder / SURFACE)
     row = estimate_row(mesh, views, SEED, told)
     if isinstance(row, NoRow):
         return row, same

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from core.io.sparse import read_model
+from core.io.sparse import model_folder
 from core.io.surface import supported_mesh
-from core.mapping.scene import oriented
+from core.mapping.load import read_surface
 from core.products.surface import BladesProduct
 from core.row.estimate import describe_row
 from core.row.files import read_found, write_blades
 from core.row.model import BladeRow, NoRow
 from core.row.overlap import Hypothesis
-from core.scene.views import views_of
 from core.stage import StageTask
-from core.surface.ply import read_mesh
 
 
 def run(task: StageTask) -> BladesProduct:
@@ -26,7 +24,6 @@ def run(task: StageTask) -> BladesProduct:
 
 
 def _described(task: StageTask, found: Hypothesis) -> BladeRow | NoRow:
-    views = views_of(read_model(task.input("extend")))
-    mesh = oriented(read_mesh(supported_mesh(task.input("mesh"))), views)
+    mesh, views = read_surface(model_folder(task.input("extend")), supported_mesh(task.input("mesh")))
     task.report(1, 4, "telling the blades apart")
     return describe_row(mesh, views, task.settings.seed, found, task.settings.row)

@@ -41,12 +41,15 @@ def run(task: StageTask) -> TimelineProduct:
     mesh = read_mesh(supported_mesh(task.input("mesh")))
     views = views_of(read_model(task.input("extend")))
     row = read_blades(task.input("blades")) if task.has("blades") else NoRow(UnknownRow.NOT_COMPUTED)
-    found = _grouping(task, mesh, views, row).group()
+    grouping = _grouping(task, mesh, views, row)
+    found = grouping.group()
     extra = {**mesh.extra, "defect_id": found.vertex_defect}
     findings: list[JsonObject] = []
     if isinstance(row, BladeRow):
         task.report(3, 4, "finding the blades of the defects")
-        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.submodel, found.scale))
+        # The rules of the thesis open no scene, in which the surface has been turned towards the cameras before.
+        facing = grouping.scene.mesh if isinstance(grouping, SurfaceGrouping) else oriented(mesh, views)
+        found, findings = _on_row(found, RowOfModel(row, facing, views, task.submodel, found.scale))
         extra["blade"] = blades_of_vertices(row, mesh)
     document = {**row.to_dict(), "findings": findings, "scale": scale_fields(found.scale)}
     write_json(task.out / ROW, document)

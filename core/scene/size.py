@@ -9,7 +9,6 @@ from math import hypot, sqrt
 
 from core.json_files import JsonObject
 
-
 MM_PER_INCH = 25.4
 """Some people read inches; files are in mm."""
 

@@ -7,8 +7,8 @@ import json
 import pytest
 
 from core.errors import BadInput
-from core.settings import make_settings
 from core.scene.on_row import Side
+from core.settings import make_settings
 from core.settings.limits import Limit, parse_limits
 
 TABLE = (

@@ -247,7 +247,8 @@ def _of_submodel(submodel: int, timelines: Sequence[str], graph: str) -> list[Ta
         TaskSpec(key("fuse"), (key("undistort"), geometric), one, optional=True),
         TaskSpec(key("mesh"), (key("fuse"),), one, optional=True),
         TaskSpec(key("row"), shape, one, optional=True),
-        TaskSpec(key("blades"), (*shape, key("row")), one, optional=True),
+        # The row of a further model is put onto that of the first.
+        TaskSpec(key("blades"), ("frames", "extend", "mesh", "blades", *shape, key("row")), one, optional=True),
         TaskSpec(
             key("map_defects"),
             ("probe", "annotations", "frames", graph, key("undistort"), geometric, *surface),

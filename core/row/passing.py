@@ -1,8 +1,8 @@
-"""How many blades pass between two models of one row: by frames that both have, or by the turning on both sides of a gap.
+"""How many blades lie between two models of one row: by frames that both have, or by the turn on both sides of a gap.
 
-Both models know the turn of the camera about the axis in pitches, but from a blade of their own. What lies between is a
-whole number. A frame that both have tells it; else the turn before the gap and after it are carried on into it, and what
-such a prediction is worth is found where the turn is known, inside the models.
+Both models know the turn of the camera about the axis in pitches, but from a blade of their own. What lies between is
+a whole number. A frame that both have tells it; else the turn before the gap and after it are carried on into it, and
+what such a prediction is worth is found where the turn is known, inside the models.
 """
 
 from __future__ import annotations
@@ -111,7 +111,8 @@ def offset_between(
     Args:
         first: turn of the camera in each of its frames, pitches from its own blade 0.
         second: of the other model, in the direction of the first.
-        moments_s: of the frames, s; those without one count where both models have them alone; videos lie far apart on this axis.
+        moments_s: of the frames, s; videos lie far apart on this axis. A frame without one counts only where both
+            models have it.
     """
     both = sorted(first.keys() & second.keys())
     if both:

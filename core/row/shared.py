@@ -1,7 +1,7 @@
 """Two models of one row: the similarity that lays the blades of one onto those of the other, but for whole pitches.
 
-Models that no picture joins have a frame and a unit each. Blades are equal, so one blade, on which all those of its model
-are laid, can be laid onto that of another model; which blade of one is which of the other it does not tell.
+Models that no picture joins have a frame and a unit each. Blades are equal, so one blade, on which all those of its
+model are laid, can be laid onto that of another model; which blade of one is which of the other it does not tell.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ def _starts(first: OneBlade, second: OneBlade, way: int) -> Iterator[Similarity]
 
 
 def _laid(first: OneBlade, second: OneBlade, motion: Similarity, way: int) -> Laid:
-    """The overlap is the mean of both ways: a blade shrunk onto a part of the other lies on it, but not the other way."""
+    """Both ways count: a blade shrunk onto a part of the other lies on it, but the other one does not."""
     here, there = first.points, second.points
     moved = SurfaceSample(motion.apply(there.points), there.normals @ motion.rotation.T)
     shares = []
@@ -150,7 +150,7 @@ def _laid(first: OneBlade, second: OneBlade, motion: Similarity, way: int) -> La
 
 
 def off_axis(first: Axis, second: Axis, laid: Laid, middle: F64) -> tuple[float, float]:
-    """Angle between two axes, degrees, and their distance beside the (3,) middle of the blade, once one is laid onto it.
+    """Angle between two axes, degrees, and their distance beside the (3,) middle of the blade, once it is laid on.
 
     The distance is a share of the radius there.
     """

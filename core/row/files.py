@@ -1,4 +1,4 @@
-"""``found.json``, ``blades.json`` and ``on_first.json``: what the stages `row` and `blades` hand on, in full precision."""
+"""``found.json``, ``blades.json`` and ``on_first.json``: what `row` and `blades` hand on, in full precision."""
 
 from __future__ import annotations
 

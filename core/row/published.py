@@ -91,7 +91,8 @@ def write_row(folder: Path, told: RowSettings = UNTOLD, limits: Sequence[Limit] 
     for number in model_numbers(folder):
         below = model_folder(folder, number)
         one = _row_of(below, number, told, scale_of_model(folder, number), first, moments_s)
-        first = first or one.shown
+        if number == 0:
+            first = one.shown
         where, change = one.where, one.change
         own = [change.record(record) for record in defects if record.model == number]
         detections = [change.detection(row) if row.model == number else row for row in detections]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from bench.scenes.blades import surface_point
+from cli.main import main
 from core.geometry.similarity import Similarity
 from core.io.frames import write_frames
 from core.io.sparse import write_model
@@ -26,7 +27,6 @@ from core.row.model import BladeRow, EdgeName, NoRow, UnknownRow
 from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, model_of_row, of_further, put_on_first
 from core.row.overlap import Hypothesis
 from core.row.passing import NoOffset, Offset, OffsetFrom, offset_between
-from core.row.published import write_row
 from core.row.turn import Axis
 from core.scene.frame import Crop
 from core.scene.views import Views
@@ -251,7 +251,11 @@ def test_the_stage_of_a_further_model_puts_it_on_the_first_one(tmp_path: Path) -
 
 
 def test_the_tables_name_the_blades_of_both_models_by_the_first_ones_numbers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: ModelOfRow, second: ModelOfRow
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    first: ModelOfRow,
+    second: ModelOfRow,
 ) -> None:
     parts = [(surface(EARLY), first), (moved(surface(LATE), seen(range(14, 30)))[0], second)]
     known = iter([first.row, second.row])
@@ -274,7 +278,9 @@ def test_the_tables_name_the_blades_of_both_models_by_the_first_ones_numbers(
     write_json(folder / DEFECTS, records)
     write_json(folder / SUMMARY, {})
     write_csv(folder / FRAMES, ["index", "time_s"], [{"index": k, "time_s": MOMENTS_S[k]} for k in MOMENTS_S])
-    write_row(folder)
+    assert main(["row", str(folder)]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last == "model 1: on the row of the first model, by turning; of its blades 1 is 4, 2 is 5, 3 is 6, 4 is 7"
     assert [row["blade"] for row in read_json(folder / DETECTIONS)] == ["4", "4"], "one blade, seen by both"
     assert [record["blade"] for record in read_json(folder / DEFECTS)] == ["4", "4"]
     further = read_json(folder / "models" / "1" / "row.json")
@@ -282,9 +288,10 @@ def test_the_tables_name_the_blades_of_both_models_by_the_first_ones_numbers(
     assert further["on_first"]["offset_from"] == "turning"
 
 
-def test_two_models_of_what_is_no_row_say_so(tmp_path: Path) -> None:
+def test_two_models_of_what_is_no_row_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = opened("two_models", tmp_path / "result")
-    write_row(folder)
+    assert main(["row", str(folder)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "model 1: the row of one of the two models is unknown"
     further = read_json(folder / "models" / "1" / "row.json")
     assert (further["status"], further["on_first"]["reason"]) == ("unknown", "no_row")
     assert further["on_first"]["names"] == {}

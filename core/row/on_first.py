@@ -6,7 +6,7 @@ geometry does not tell: frames of both models, a steady turn between them or a p
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import hypot
@@ -59,6 +59,7 @@ NOT_ON_FIRST: Mapping[NotOnFirst | NoOffset, str] = {
     NoOffset.NOT_NEXT: "no frame of one model is followed by one of the other",
     NoOffset.TOO_FAR: "too much passes between them",
     NoOffset.NOT_STEADY: "the turn between them is not steady enough",
+    NoOffset.JUMP: "the pictures jump between them",
     NoOffset.NO_SUCH_BLADE: "the blade that was told is none of the model",
     NoOffset.DISAGREES: "two gaps between them tell different numbers",
 }
@@ -124,7 +125,12 @@ class OnFirst:
 
 
 def put_on_first(
-    first: ModelOfRow, second: ModelOfRow, model: int, moments_s: Mapping[int, float], told: RowSettings
+    first: ModelOfRow,
+    second: ModelOfRow,
+    model: int,
+    moments_s: Mapping[int, float],
+    told: RowSettings,
+    jumps: Sequence[tuple[int, int]] = (),
 ) -> tuple[BladeRow | NoRow, OnFirst]:
     """Put the row of a further model onto that of the first.
 
@@ -134,11 +140,12 @@ def put_on_first(
         model: its number.
         moments_s: of the frames, s; videos lie far apart on this axis.
         told: what the user knows of the row.
+        jumps: neighbouring frames between which the pictures jump.
 
     Returns:
         The row of the further model, its edges named as those of the first, and how it lies on it.
     """
-    found = _on_first(first, second, moments_s, told.same_in(model))
+    found = _on_first(first, second, moments_s, told.same_in(model), jumps)
     row = second.row
     if isinstance(row, BladeRow) and found.laid is not None and isinstance(first.row, BladeRow):
         edge = first.row.edge_a
@@ -146,7 +153,13 @@ def put_on_first(
     return row, found
 
 
-def _on_first(first: ModelOfRow, second: ModelOfRow, moments_s: Mapping[int, float], told: SameBlade | None) -> OnFirst:
+def _on_first(
+    first: ModelOfRow,
+    second: ModelOfRow,
+    moments_s: Mapping[int, float],
+    told: SameBlade | None,
+    jumps: Sequence[tuple[int, int]],
+) -> OnFirst:
     if isinstance(first.row, NoRow) or isinstance(second.row, NoRow):
         return OnFirst({}, NotOnFirst.NO_ROW)
     here, there = one_blade(first.row, first.sample), one_blade(second.row, second.sample)
@@ -158,7 +171,7 @@ def _on_first(first: ModelOfRow, second: ModelOfRow, moments_s: Mapping[int, flo
     else:
         at = laid.motion.apply(there.middle[None])[0]
         turns = (_turn(first, here.row, at, 1), _turn(second, there.row, there.middle, laid.way))
-        found = offset_between(*turns, moments_s)
+        found = offset_between(*turns, moments_s, jumps)
     if isinstance(found, NoOffset):
         return OnFirst({}, NotOnFirst.OFFSET_UNKNOWN, found, laid)
     names = {number: first.row.number(laid.way * index + found.pitches) for index, number in second.row.numbers.items()}

@@ -7,7 +7,7 @@ what such a prediction is worth is found where the turn is known, inside the mod
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
@@ -54,6 +54,8 @@ class NoOffset(StrEnum):
     """More than a blade passes between them, or too much time to carry the turn on."""
     NOT_STEADY = "not_steady"
     """The turn cannot be foretold well enough over so long a gap, or falls between two whole numbers."""
+    JUMP = "jump"
+    """The pictures jump between them, perhaps by whole blades."""
     NO_SUCH_BLADE = "no_such_blade"
     """A person told a blade that the model does not have."""
     DISAGREES = "disagrees"
@@ -104,7 +106,10 @@ class Turn:
 
 
 def offset_between(
-    first: Mapping[int, float], second: Mapping[int, float], moments_s: Mapping[int, float]
+    first: Mapping[int, float],
+    second: Mapping[int, float],
+    moments_s: Mapping[int, float],
+    jumps: Sequence[tuple[int, int]] = (),
 ) -> Offset | NoOffset:
     """The whole number of pitches that the turn of the second has to grow by to go on in that of the first.
 
@@ -113,6 +118,7 @@ def offset_between(
         second: of the other model, in the direction of the first.
         moments_s: of the frames, s; videos lie far apart on this axis. A frame without one counts only where both
             models have it.
+        jumps: neighbouring frames between which the pictures jump: nothing is carried on over them.
     """
     both = sorted(first.keys() & second.keys())
     if both:
@@ -124,11 +130,11 @@ def offset_between(
     gaps = list(_gaps(*turns))
     if not gaps:
         return NoOffset.NOT_NEXT
-    told = [_over(turns, *gap) for gap in gaps]
+    jumped = [(moments_s[a], moments_s[b]) for a, b in jumps if a in moments_s and b in moments_s]
+    told = [_over(turns, *gap, jumped) for gap in gaps]
     known = [one for one in told if isinstance(one, Offset)]
     if not known:
-        reasons = [one for one in told if isinstance(one, NoOffset)]
-        return NoOffset.NOT_STEADY if NoOffset.NOT_STEADY in reasons else NoOffset.TOO_FAR
+        return next(one for one in (NoOffset.NOT_STEADY, NoOffset.JUMP, NoOffset.TOO_FAR) if one in told)
     if len({one.pitches for one in known}) > 1:
         return NoOffset.DISAGREES
     return min(known, key=lambda one: one.sigma)
@@ -146,10 +152,15 @@ def _gaps(first: Turn, second: Turn) -> Iterator[tuple[int, int, int]]:
             yield one, row, next_row
 
 
-def _over(turns: tuple[Turn, Turn], before: int, row: int, next_row: int) -> Offset | NoOffset:
+def _over(
+    turns: tuple[Turn, Turn], before: int, row: int, next_row: int, jumps_s: Sequence[tuple[float, float]]
+) -> Offset | NoOffset:
     """What one gap tells."""
     here, there = turns[before], turns[1 - before]
-    gap_s = float(there.moments_s[next_row] - here.moments_s[row])
+    start, end = float(here.moments_s[row]), float(there.moments_s[next_row])
+    if any(a < end and b > start for a, b in jumps_s):
+        return NoOffset.JUMP
+    gap_s = end - start
     window_s = WINDOW_GAPS * gap_s
     rates = here.rate(row, None, window_s), there.rate(None, next_row, window_s)
     if rates[0] is None or rates[1] is None:

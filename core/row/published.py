@@ -5,6 +5,7 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -52,6 +53,7 @@ from core.surface.ply import read_mesh, write_mesh
 from core.videos import moment
 
 SEED = 0
+_BETWEEN = re.compile(r"between frames (\d+) and (\d+)")
 _WRITTEN = ("blade", *ROW_COLUMNS)
 
 Rows = list[JsonObject]
@@ -87,10 +89,10 @@ def write_row(folder: Path, told: RowSettings = UNTOLD, limits: Sequence[Limit] 
     found: dict[int, BladeRow | NoRow] = {}
     flags: dict[int, Sequence[Flag]] = {}
     first: ModelOfRow | None = None
-    moments_s = _moments(folder / FRAMES)
+    moments_s, jumps = _moments(folder / FRAMES), _jumps(folder / QUALITY)
     for number in model_numbers(folder):
         below = model_folder(folder, number)
-        one = _row_of(below, number, told, scale_of_model(folder, number), first, moments_s)
+        one = _row_of(below, number, told, scale_of_model(folder, number), first, moments_s, jumps)
         if number == 0:
             first = one.shown
         where, change = one.where, one.change
@@ -183,6 +185,7 @@ def _row_of(
     old: Scale | None,
     first: ModelOfRow | None,
     moments_s: Mapping[int, float],
+    jumps: Sequence[tuple[int, int]],
 ) -> _Found:
     """The row of one model of a result, by the files below its folder, and its scale before and now.
 
@@ -196,7 +199,7 @@ def _row_of(
     row = estimate_row(mesh, views, SEED, of_further(told) if model else told)
     shown = model_of_row(row, mesh, views, SEED)
     if first is not None:
-        row, on_first = put_on_first(first, shown, model, moments_s, told)
+        row, on_first = put_on_first(first, shown, model, moments_s, told, jumps)
     laid = on_first.to_dict() if model else None
     if isinstance(row, NoRow):
         return _Found(row, same, shown, laid)
@@ -215,6 +218,13 @@ def _moments(path: Path) -> dict[int, float]:
         return {}
     rows = read_csv(path)
     return {int(row["index"]): moment(int(row.get("video") or 0), float(row["time_s"])) for row in rows}
+
+
+def _jumps(path: Path) -> list[tuple[int, int]]:
+    """Neighbouring frames between which the pictures jump, as the flags of the result name them."""
+    flags = read_json(path)["flags"] if path.is_file() else []
+    named = [_BETWEEN.search(flag.get("where") or "") for flag in flags if flag["code"] == "picture_jumps"]
+    return [(int(found[1]), int(found[2])) for found in named if found is not None]
 
 
 def _without(row: DetectionRow) -> DetectionRow:

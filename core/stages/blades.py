@@ -8,6 +8,7 @@ from core.io.frames import read_frames
 from core.io.sparse import model_folder
 from core.io.surface import supported_mesh
 from core.mapping.load import read_surface
+from core.products.front import BridgeProduct
 from core.products.surface import BladesProduct
 from core.row.estimate import describe_row
 from core.row.files import read_blades, read_found, write_blades, write_on_first
@@ -48,7 +49,8 @@ def _put_on_first(task: StageTask, row: BladeRow | NoRow, surface: tuple[Mesh, V
         model_of_row(row, *surface, seed),
     ]
     moments_s = read_frames(task.input("frames")).moment_of_index
-    row, on_first = put_on_first(models[0], models[1], task.submodel, moments_s, task.settings.row)
+    jumps = task.products.of(BridgeProduct, "bridge").jumps if "bridge" in task.products else ()
+    row, on_first = put_on_first(models[0], models[1], task.submodel, moments_s, task.settings.row, jumps)
     write_on_first(task.out, on_first)
     return row
 

@@ -205,6 +205,8 @@ def test_what_cannot_be_foretold_is_unknown() -> None:
     videos = {k: TIMES[k] + (APART_S if k > 20 else 0.0) for k in TIMES}
     assert offset_between(early, late, videos) == NoOffset.TOO_FAR, "another video"
     assert offset_between(early, {}, TIMES) == NoOffset.NOT_NEXT
+    assert offset_between(early, late, TIMES, [(20, 21)]) == NoOffset.JUMP
+    assert isinstance(offset_between(early, late, TIMES, [(3, 4), (30, 31)]), Offset), "jumps inside a model"
     # Of three runs of frames the last is of the first model again, a blade farther on than the other gap says.
     again = early | {k: 0.15 * k + 1.0 for k in range(43, 60)}
     assert offset_between(again, late, TIMES) == NoOffset.DISAGREES
@@ -286,6 +288,12 @@ def test_the_tables_name_the_blades_of_both_models_by_the_first_ones_numbers(
     further = read_json(folder / "models" / "1" / "row.json")
     assert further["findings"][0]["blade"] == 1, "the model's own number"
     assert further["on_first"]["offset_from"] == "turning"
+    jump = {"code": "picture_jumps", "severity": "warning", "where": "between frames 12 and 13"}
+    write_json(folder / "quality.json", {"verdict": "suspect", "flags": [jump]})
+    known = iter([first.row, second.row])
+    assert main(["row", str(folder)]) == 0
+    assert "the pictures jump between them" in capsys.readouterr().out
+    assert [row["blade"] for row in read_json(folder / DETECTIONS)] == ["4", "1-B1"]
 
 
 def test_two_models_of_what_is_no_row_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

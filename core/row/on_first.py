@@ -21,7 +21,7 @@ from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.shared import Laid, OneBlade, laid_onto, off_axis, one_blade
 from core.row.turn import Axis
 from core.scene.views import Views
-from core.settings.row import RowSettings, SameBlade
+from core.settings.row import RowSettings, SameBlade, same_blades
 from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
@@ -145,7 +145,8 @@ def put_on_first(
     Returns:
         The row of the further model, its edges named as those of the first, and how it lies on it.
     """
-    found = _on_first(first, second, moments_s, told.same_in(model), jumps)
+    same = next((one for one in same_blades(told.same_blade) if one.model == model), None)
+    found = _on_first(first, second, moments_s, same, jumps)
     row = second.row
     if isinstance(row, BladeRow) and found.laid is not None and isinstance(first.row, BladeRow):
         edge = first.row.edge_a

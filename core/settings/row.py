@@ -29,8 +29,10 @@ class SameBlade:
     """On the row of the first model, as the tables name it."""
 
 
-def _same_blades(text: str) -> tuple[SameBlade, ...]:
-    """ValueError for what is no list of such pairs, or tells of one model twice."""
+def same_blades(text: str | None) -> tuple[SameBlade, ...]:
+    """The pairs that `row.same_blade` tells; ValueError for what is no list of such pairs, or tells of one model twice."""
+    if text is None:
+        return ()
     pairs = [_SAME.fullmatch(pair.strip()) for pair in text.split(",")]
     found = tuple(SameBlade(*map(int, pair.groups())) for pair in pairs if pair is not None)
     if len(found) < len(pairs) or any(one.model == 0 for one in found):
@@ -84,14 +86,8 @@ class RowSettings(Group):
     @field_validator("same_blade")
     @classmethod
     def _pairs(cls, text: str | None) -> str | None:
-        if text is not None:
-            _same_blades(text)
+        same_blades(text)
         return text
-
-    def same_in(self, model: int) -> SameBlade | None:
-        """What is told of a further model; None where nothing is."""
-        told = () if self.same_blade is None else _same_blades(self.same_blade)
-        return next((one for one in told if one.model == model), None)
 
     @model_validator(mode="after")
     def _whole(self) -> Self:

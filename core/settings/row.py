@@ -30,7 +30,7 @@ class SameBlade:
 
 
 def same_blades(text: str | None) -> tuple[SameBlade, ...]:
-    """The pairs that `row.same_blade` tells; ValueError for what is no list of such pairs, or tells of one model twice."""
+    """The pairs that `row.same_blade` tells; ValueError for what is no list of pairs, or tells of one model twice."""
     if text is None:
         return ()
     pairs = [_SAME.fullmatch(pair.strip()) for pair in text.split(",")]

@@ -30,9 +30,10 @@ from core.row.passing import NoOffset, Offset, OffsetFrom, offset_between
 from core.row.turn import Axis
 from core.scene.frame import Crop
 from core.scene.views import Views
-from core.settings import make_settings
+from core.settings import make_settings, only_declared
 from core.settings.row import RowSettings
 from core.stage import StageTask
+from core.stage_specs import STAGES
 from core.stages import blades as blades_stage
 from core.surface.ply import Mesh, write_mesh
 from core.task_key import key_of
@@ -224,7 +225,8 @@ def test_numbers_and_edges_that_are_told_are_those_of_the_first_model() -> None:
 
 
 def test_the_stage_of_a_further_model_puts_it_on_the_first_one(tmp_path: Path) -> None:
-    settings = make_settings("default", {"row.edge_a": "leading", "row.same_blade": "1-B2=6"})
+    told = make_settings("default", {"row.edge_a": "leading", "row.same_blade": "1-B2=6"})
+    settings = only_declared(told, STAGES["blades"].settings)
     (tmp_path / "frames").mkdir()
     write_frames(tmp_path / "frames", run_frames(N_FRAMES), Crop(0, 0, 960, 720, 960, 720))
     mesh, views, found = moved(surface(LATE), seen(range(14, 30)))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from bench.arguments import add_results
 from bench.kept import Found, markdown_table, read_found, warnings_of
 from bench.scenes.spec import Scene, named
 from bench.scenes.suite import FAMILIES
@@ -54,21 +55,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "folders", type=Path, nargs="*", metavar="DIR", help="folders that `scenes` and `real` have written"
     )
-    parser.add_argument(
-        "--result",
-        type=Path,
-        nargs=2,
-        action="append",
-        default=[],
-        metavar=("RESULT", "TRUTH"),
-        help="a result folder and the truth about its clip (repeatable)",
-    )
+    add_results(parser)
 
 
 def command(arguments: argparse.Namespace) -> None:
     """Print a row for every result and how often verdict and truth agree."""
     judged = [one for folder in arguments.folders for one in of_bench(folder)]
-    judged += [of_result(result, truth) for result, truth in arguments.result]
+    judged += [of_result(result, truth) for result, truth in arguments.results]
     if not judged:
         raise BadInput("no result was named", where="DIR")
     print(markdown_table(HEAD, [cells(one) for one in judged]))

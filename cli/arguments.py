@@ -149,7 +149,7 @@ def _questions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="what is known of the row: count, zero_blade, direction, edge_a, radius_mm (options row.*)",
+        help="what is known of the row: count, zero_blade, direction, edge_a, radius_mm, same_blade (options row.*)",
     )
     add_limits(row)
     row.add_argument("result", type=Path, metavar="RESULT", help="output folder of `bladeatlas run`")

@@ -14,7 +14,7 @@ from cli.input_files import limits_text
 from cli.terminal import say, say_json
 from core.errors import BadInput
 from core.json_files import read_json
-from core.outputs import ROW
+from core.outputs import ROW, model_folder, model_numbers
 from core.scene.size import Scale
 from core.settings import make_settings
 from core.settings.limits import parse_limits
@@ -36,7 +36,8 @@ def command(parsed: argparse.Namespace) -> int:
     if parsed.json:
         say_json(document, indent=1)
     else:
-        say(*row_lines(document))
+        further = {number: read_json(model_folder(folder, number) / ROW) for number in model_numbers(folder)[1:]}
+        say(*row_lines(document), *(further_line(number, one) for number, one in further.items()))
     return 0
 
 
@@ -65,6 +66,16 @@ def row_lines(document: dict[str, Any]) -> list[str]:
     scale = Scale.from_dict(document.get("scale") or {})
     known = [] if scale is None else [f"scale: {scale.value:.4g} +- {scale.sigma:.2g} mm, from {scale.source}"]
     return [f"row: pitch {pitch}, {blades} blades", *known, closing_line(document)]
+
+
+def further_line(number: int, document: dict[str, Any]) -> str:
+    """How the blades of a further model lie on the row of the first, in one line."""
+    told = document["on_first"]
+    if not told["names"]:
+        return f"model {number}: {told['reason_text'] or 'its blades lie before number 1 of the first model'}"
+    names = ", ".join(f"{own} is {first}" for own, first in told["names"].items())
+    how = str(told["offset_from"]).replace("_", " ")
+    return f"model {number}: on the row of the first model, by {how}; of its blades {names}"
 
 
 def closing_line(document: dict[str, object]) -> str:

@@ -222,12 +222,12 @@ def _dense_and_mapping(settings: Settings, done: Products, graph: str) -> list[T
     n_submodels = done.of(SubmodelsProduct, "pieces").n_pieces if settings.model.further else 0
     timelines = [key_of("timeline", submodel) for submodel in range(n_submodels + 1)]
     for submodel in range(1, n_submodels + 1):
-        tasks += _of_submodel(submodel, timelines[:submodel], graph)
+        tasks += _of_submodel(submodel, timelines[:submodel], graph, ("bridge",) if settings.matching.bridge else ())
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
 
 
-def _of_submodel(submodel: int, timelines: Sequence[str], graph: str) -> list[TaskSpec]:
+def _of_submodel(submodel: int, timelines: Sequence[str], graph: str, bridge: tuple[str, ...]) -> list[TaskSpec]:
     """Everything from the final model on for a further model, one task per stage; failing ones are an outcome."""
 
     def key(stage: str) -> str:
@@ -247,7 +247,10 @@ def _of_submodel(submodel: int, timelines: Sequence[str], graph: str) -> list[Ta
         TaskSpec(key("fuse"), (key("undistort"), geometric), one, optional=True),
         TaskSpec(key("mesh"), (key("fuse"),), one, optional=True),
         TaskSpec(key("row"), shape, one, optional=True),
-        TaskSpec(key("blades"), (*shape, key("row")), one, optional=True),
+        # The row of a further model is put onto that of the first, and not over a jump of the pictures.
+        TaskSpec(
+            key("blades"), ("frames", *bridge, "extend", "mesh", "blades", *shape, key("row")), one, optional=True
+        ),
         TaskSpec(
             key("map_defects"),
             ("probe", "annotations", "frames", graph, key("undistort"), geometric, *surface),

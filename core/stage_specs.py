@@ -231,9 +231,9 @@ STAGES: dict[str, StageSpec] = {
         _spec(
             "blades",
             BladesProduct,
-            *_options("row", "count", "zero_blade", "direction", "edge_a"),
+            *_options("row", "count", "zero_blade", "direction", "edge_a", "same_blade"),
             "seed",
-            version=4,
+            version=5,
             weight=1,
         ),
         _spec("map_defects", PlacesProduct, "mapping", version=11, weight=0.6),

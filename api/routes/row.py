@@ -47,6 +47,7 @@ class RowTold(BaseModel):
     radius_mm: float | None = Field(None, description="distance of `radius_at` from the axis of the engine, mm")
     radius_sigma_mm: float | None = Field(None, description="its standard deviation, mm")
     radius_at: Literal["root", "tip"] | None = Field(None, description="the end of the blades that it is of")
+    same_blade: str | None = Field(None, description="a blade of a further model that is one of the first: `1-B4=2`")
     scale: ScaleTold | None = Field(None, description="a known length in a frame")
     limits: str | None = Field(None, description="limits of the shop, a table in CSV or JSON; null takes it back")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -208,15 +208,28 @@ POWERS = {"length": 1, "width": 1, "area": 2, "depth": 1}
 def score_sizes(
     records: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Similarity | None]
 ) -> dict[str, Any]:
-    """Relative errors of the measures by what they are from (``mask``, ``box``), each over all defects that have one.
-
-    A size in units of the model is brought to mm by the alignment of the cameras, as if the scale were known exactly.
+    """Errors of the measures by what they are from (``mask``, ``box``), each over all defects that have one.
 
     Returns:
-        By origin and measure {count, median, p95, within_2_sigma}: of |measured / true - 1|, and the share of true
-        values within two standard deviations of the measured one. Measures that nothing is known of are left out.
+        By origin and measure what `size_figures` gives. Measures that nothing is known of are left out.
     """
-    found: dict[tuple[str, str], list[tuple[float, bool]]] = {}
+    found = size_errors(records, truth, alignments)
+    return {
+        origin: {name: size_figures(errors) for name, errors in measures.items()} for origin, measures in found.items()
+    }
+
+
+SizeErrors = dict[str, dict[str, list[tuple[float, bool]]]]
+"""By origin and measure, of every defect: |measured / true - 1|, and whether the true value lies within two standard
+deviations of the measured one."""
+
+
+def size_errors(records: list[dict[str, Any]], truth: Truth, alignments: Mapping[int, Similarity | None]) -> SizeErrors:
+    """Relative errors of the measures, by what they are from.
+
+    A size in units of the model is brought to mm by the alignment of the cameras, as if the scale were known exactly.
+    """
+    found: SizeErrors = {str(origin): {} for origin in SizeFrom}
     for record in records:
         owner = owner_of(record, truth, alignments)
         sim3 = alignments.get(int(record.get("model") or 0))
@@ -229,14 +242,12 @@ def score_sizes(
                 continue
             value, sigma = (number * factor ** POWERS[name] for number in (value, sigma))
             inside = abs(value - true) <= 2.0 * sigma
-            found.setdefault((record["size_from"], name), []).append((abs(value / true - 1.0), inside))
-    return {
-        str(origin): {name: _figures(found[origin, name]) for name in POWERS if (origin, name) in found}
-        for origin in SizeFrom
-    }
+            found[record["size_from"]].setdefault(name, []).append((abs(value / true - 1.0), inside))
+    return {origin: {name: measures[name] for name in POWERS if name in measures} for origin, measures in found.items()}
 
 
-def _figures(rows: list[tuple[float, bool]]) -> dict[str, Any]:
+def size_figures(rows: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    """Of pairs of `SizeErrors`: {count, median, p95, within_2_sigma}."""
     errors = np.array([error for error, _ in rows])
     return {
         "count": len(rows),

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.accuracy.placement import Placement
+from bench.accuracy.placement import Placement, size_errors
 from bench.accuracy.result import Result, ResultModel
 from bench.accuracy.true_coverage import LEAST_VIEWS, TrueCoverage, true_coverage
 from bench.accuracy.true_row import TrueFinding, TrueRow
@@ -51,6 +51,10 @@ class Numbering:
         value = self.way * blade + self.offset
         return value if self.count is None else (value - 1) % self.count + 1
 
+    def blade(self, number: int) -> int:
+        """The true blade that a number stands for; where numbers go round, one of those."""
+        return self.way * (number - self.offset)
+
 
 def score_rows(
     result: Result, truth: Truth, alignments: Mapping[int, Similarity | None], placements: Sequence[Placement]
@@ -58,18 +62,36 @@ def score_rows(
     """The score of every model that has a `row.json`, by number; empty where the truth tells of no row.
 
     Returns:
-        By model {status, reason, blades_in_view, row_expected, right, pitch_deg, pitch_error, axis_error_deg,
-        axis_off_mm, surface_blade_right, detections, coverage}: what cannot be measured is None. `right` is None
-        where the row is unknown. `pitch_error` is a share of the true pitch; `axis_off_mm` how far from the true axis
-        the one found passes at the height of the blades.
+        By model {status, reason, blades_in_view, row_expected, right, sizes, pitch_deg, pitch_error, axis_error_deg,
+        axis_off_mm, surface_blade_right, detections, coverage, on_first}: what cannot be measured is None. `right` is
+        None where the row is unknown. `pitch_error` is a share of the true pitch; `axis_off_mm` how far from the true
+        axis the one found passes at the height of the blades. `sizes` is that of the model's defects (`SizeErrors`).
+        `on_first` only of further models: {same_row, reason, offset_from, right}, whether its blades have the numbers
+        that they have on the row of the first; None where they have none.
     """
     if truth.row is None:
         return {}
-    return {
-        str(number): _score(model, model.row, truth, truth.row, alignments[number], result, placements)
-        for number, model in result.models.items()
-        if model.row is not None
-    }
+    found: dict[str, Found] = {}
+    numberings: dict[int, Numbering] = {}
+    for number, model in sorted(result.models.items()):
+        if model.row is None:
+            continue
+        score, numbering = _score(model, model.row, truth, truth.row, alignments[number], result, placements)
+        own = [record for record in result.defects if int(record.get("model") or 0) == number]
+        found[str(number)] = {**score, "sizes": size_errors(own, truth, alignments)}
+        if numbering is not None:
+            numberings[number] = numbering
+        if "on_first" in model.row:
+            found[str(number)]["on_first"] = _on_first(model.row["on_first"], numberings.get(0), numbering)
+    return found
+
+
+def _on_first(told: Found, first: Numbering | None, own: Numbering | None) -> Found:
+    """Whether the blades of a further model have the numbers that they have on the row of the first."""
+    right = None
+    if told["names"] and first is not None and own is not None:
+        right = all(int(name) == first.number(own.blade(int(number))) for number, name in told["names"].items())
+    return {**{name: told[name] for name in ("same_row", "reason", "offset_from")}, "right": right}
 
 
 def _score(
@@ -80,7 +102,7 @@ def _score(
     sim3: Similarity | None,
     result: Result,
     placements: Sequence[Placement],
-) -> Found:
+) -> tuple[Found, Numbering | None]:
     shown = true_coverage(truth, row, sorted(model.source_indices))
     score: Found = {
         "status": document["status"],
@@ -90,10 +112,10 @@ def _score(
         "right": None,
     }
     if document["status"] == RowStatus.UNKNOWN:
-        return score
+        return score, None
     score |= {"pitch_deg": document["pitch_deg"], "pitch_error": _pitch_error(document, row)}
     if sim3 is None:
-        return score
+        return score, None
     direction = sim3.rotation @ np.asarray(document["axis"], np.float64)
     score["axis_error_deg"] = float(np.degrees(np.arccos(min(1.0, abs(float(direction[2]))))))
     score["axis_off_mm"] = _axis_off(sim3.apply(np.array([document["point"]], np.float64))[0], direction)
@@ -103,15 +125,15 @@ def _score(
         for line, place in zip(result.detections, placements, strict=True)
         if int(line.get("model") or 0) == model.number and place.mapped and place.true_defect is not None
     ]
-    numbers, blades = _votes(model, sim3, row, truth, own)
+    numbers, blades = _votes(model, document, sim3, row, truth, own)
     numbering = _numbering(document, direction, numbers, blades)
     if numbering is None:  # no place has a blade, so which number is which does not matter
-        return {**score, "detections": _detections(own, Numbering(1, 0), row, truth)}
+        return {**score, "detections": _detections(own, document, Numbering(1, 0), row, truth)}, None
     agrees = [number == numbering.number(blade) for number, blade in zip(numbers, blades, strict=True)]
     score["surface_blade_right"] = float(np.mean(agrees)) if model.blade_of_vertex is not None else None
-    score["detections"] = _detections(own, numbering, row, truth)
+    score["detections"] = _detections(own, document, numbering, row, truth)
     score["coverage"] = _coverage(document, numbering, shown)
-    return score
+    return score, numbering
 
 
 def _pitch_error(document: Found, row: TrueRow) -> float:
@@ -127,11 +149,16 @@ def _axis_off(point: F64, direction: F64) -> float | None:
 
 
 def _votes(
-    model: ResultModel, sim3: Similarity, row: TrueRow, truth: Truth, own: Sequence[tuple[Found, Placement]]
+    model: ResultModel,
+    document: Found,
+    sim3: Similarity,
+    row: TrueRow,
+    truth: Truth,
+    own: Sequence[tuple[Found, Placement]],
 ) -> tuple[list[int], list[int]]:
     """Numbers and the true blades they stand for: of the surface's vertices, or where it has none of detections."""
     if model.blade_of_vertex is None or not len(truth.faces):
-        told = [(_number(line), row.findings[place.true_defect or 0].blade) for line, place in own]
+        told = [(_number(line, document), row.findings[place.true_defect or 0].blade) for line, place in own]
         pairs = [(number, blade) for number, blade in told if number is not None]
         return [number for number, _ in pairs], [blade for _, blade in pairs]
     vertices, number = model.blade_of_vertex
@@ -158,13 +185,21 @@ def _numbering(document: Found, direction: F64, numbers: Sequence[int], blades: 
     return Numbering(way, votes.most_common(1)[0][0], count)
 
 
-def _number(line: Found) -> int | None:
-    """Of the column `blade`: of further models it has the model's number before it."""
+def _number(line: Found, document: Found) -> int | None:
+    """The model's own number of the blade that the column `blade` names.
+
+    Of further models it has the model's number before it, or is that of the first model's row.
+    """
     name = line.get("blade")
-    return None if name in (None, "") else int(str(name).rsplit("B", 1)[-1])
+    if name in (None, ""):
+        return None
+    own = {first: number for number, first in (document.get("on_first") or {}).get("names", {}).items()}
+    return int(own.get(str(name), str(name).rsplit("B", 1)[-1]))
 
 
-def _detections(own: Sequence[tuple[Found, Placement]], numbering: Numbering, row: TrueRow, truth: Truth) -> Found:
+def _detections(
+    own: Sequence[tuple[Found, Placement]], document: Found, numbering: Numbering, row: TrueRow, truth: Truth
+) -> Found:
     """Counts over the mapped placeable detections: of those with a span, and all for blade and side."""
     blades: Counter[str] = Counter()
     sides: Counter[str] = Counter()
@@ -172,7 +207,7 @@ def _detections(own: Sequence[tuple[Found, Placement]], numbering: Numbering, ro
     for line, place in own:
         number = place.true_defect or 0
         finding = row.findings[number]
-        told = _number(line)
+        told = _number(line, document)
         blades["unknown" if told is None else "right" if told == numbering.number(finding.blade) else "wrong"] += 1
         sides[_side(line.get("side"), finding)] += 1
         if line.get("span") is not None:

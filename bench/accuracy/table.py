@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from bench.accuracy.placement import size_figures
+
 
 def format_score(score: dict[str, Any]) -> str:
     """Lines of name and value; a dash is what could not be measured."""
@@ -34,12 +36,17 @@ def _row_rows(number: str, row: dict[str, Any]) -> Iterator[tuple[str, str]]:
     known = row["reason"] is None
     yield f"row of blades, model {number}", row["status"] if known else f"{row['status']} ({row['reason']})"
     yield "blades in view, a row was to be found", f"{row['blades_in_view']}, {_text(row['row_expected'])}"
+    for origin, name, figures in row_sizes(row):
+        texts = " / ".join(_text(figures[key]) for key in ("median", "p95", "within_2_sigma", "count"))
+        yield f"{name} by {origin}: error median / 95 %, within 2 sigma, count", texts
     if not known:
         return
     yield "right (pitch within 2 %, axis within 2 degrees)", _text(row["right"])
     yield "pitch (degrees), error (%)", f"{_text(row['pitch_deg'])}, {_text(100.0 * row['pitch_error'])}"
     axis = (_text(row.get(name)) for name in ("axis_error_deg", "axis_off_mm"))
     yield "axis: error (degrees), off (mm)", " / ".join(axis)
+    if "on_first" in row:
+        yield "on the row of the first model; its blades' numbers right", _on_first(row["on_first"])
     yield "surface with its right blade", _text(row.get("surface_blade_right"))
     one = row.get("detections")
     if one is None:
@@ -60,6 +67,24 @@ def _row_rows(number: str, row: dict[str, Any]) -> Iterator[tuple[str, str]]:
         told = " ".join(_text(blade.get(name)) for name in ("share", "views_2", "views_3", "views_5"))
         true = " ".join(_text(blade[f"true_{name}"]) for name in ("share", "views_2", "views_3", "views_5"))
         yield f"  blade {_text(blade['blade'])}: share, by 2, 3, 5 views (true)", f"{told} ({true})"
+
+
+ROW_SIZES = ("length", "depth")
+"""Measures that are asked of a row."""
+
+
+def row_sizes(row: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Origin, measure and `size_figures` of what is known of the sizes of a model's defects."""
+    for origin, measures in row.get("sizes", {}).items():
+        for name in ROW_SIZES:
+            if measures.get(name):
+                yield origin, name, size_figures(measures[name])
+
+
+def _on_first(told: dict[str, Any]) -> str:
+    which = "yes" if told["same_row"] else f"no ({told['reason']})"
+    how = told["reason"] if told["offset_from"] is None else f"by {told['offset_from']}"
+    return f"{which}; {_text(told['right'])}" + (f" ({how})" if told["same_row"] else "")
 
 
 def _model_rows(model: dict[str, Any], prefix: str) -> Iterator[tuple[str, str]]:

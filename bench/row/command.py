@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from bench.arguments import add_results
 from bench.kept import Found
 from bench.row.cases import FAMILIES
 from core.errors import BadInput
@@ -21,15 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--family", choices=[*FAMILIES, "all", "none"], default="all", help="true surfaces of which scenes (all)"
     )
     parser.add_argument("--only", metavar="NAME,...", default="", help="of these names")
-    parser.add_argument(
-        "--result",
-        type=Path,
-        nargs=2,
-        action="append",
-        default=[],
-        metavar=("RESULT", "TRUTH"),
-        help="a reconstructed result and the truth about its clip (repeatable); its row is computed anew in OUT",
-    )
+    add_results(parser, "its row is computed anew in OUT")
     parser.add_argument(
         "--unknown",
         type=Path,
@@ -57,7 +50,7 @@ def command(arguments: argparse.Namespace) -> None:
         for case in cases:
             if not wanted or case.name in wanted:
                 yield bench.of_case(case)
-        for result, truth in arguments.result:
+        for result, truth in arguments.results:
             yield bench.of_result(result, truth)
         for result in arguments.unknown:
             yield bench.of_result(result, None)

@@ -7,10 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from bench.accuracy.placement import size_figures
 from bench.accuracy.row import COVERAGE_WITHIN
+from bench.accuracy.table import ROW_SIZES, row_sizes
 from bench.kept import Found, markdown_table
 from bench.row.cases import Expected
 from core.row.model import RowStatus
+from core.scene.size import SizeFrom
 
 HEAD = (
     "case",
@@ -24,6 +27,8 @@ HEAD = (
     "span within 0.05",
     "root or tip",
     "coverage by views, median off / within 0.05",
+    "length, median / 95 % off, inside 2 sigma",
+    "depth, the same",
     "s",
 )
 
@@ -54,6 +59,7 @@ def _cells(one: Found) -> list[str]:
         "-" if not detections else f"{detections['span_within']} of {detections['span']}",
         "-" if not detections else f"{detections['end_right']} of {detections['end_told']}",
         _coverage(coverage),
+        *(_sizes(score, name) for name in ROW_SIZES),
         f"{one['seconds']:.0f}",
     ]
 
@@ -78,6 +84,18 @@ def _coverage(coverage: Found | None) -> str:
     if not coverage or coverage["views_error_median"] is None:
         return "-"
     return f"{coverage['views_error_median']:.3f} / {100 * coverage['views_within']:.0f} %"
+
+
+def _sizes(score: Found, name: str) -> str:
+    """By what the outlines are from."""
+    told = [f"{origin} {size_text(figures)}" for origin, measure, figures in row_sizes(score) if measure == name]
+    return "; ".join(told) or "-"
+
+
+def size_text(figures: dict[str, Any]) -> str:
+    """Median and 95 % of the errors, and how often the true value lies within two standard deviations, percent."""
+    percent = (f"{100 * figures[key]:.0f}" for key in ("median", "p95", "within_2_sigma"))
+    return " / ".join(percent) + f" % of {figures['count']}"
 
 
 def totals(found: Sequence[Found]) -> list[str]:
@@ -109,6 +127,14 @@ def totals(found: Sequence[Found]) -> list[str]:
     if views:
         within = 100.0 * float(np.mean(np.array(views) <= COVERAGE_WITHIN))
         lines.append(f"coverage by views: median {np.median(views):.3f} off, {within:.0f} % within {COVERAGE_WITHIN}")
+    for origin in SizeFrom:
+        for name in ROW_SIZES:
+            rows_of = [(one["score"] or {}).get("sizes", {}).get(origin, {}).get(name, ()) for one in found]
+            pooled = [pair for pairs in rows_of for pair in pairs]
+            if pooled:
+                lines.append(
+                    f"{name} by {origin}: median / 95 % off, inside 2 sigma: {size_text(size_figures(pooled))}"
+                )
     if found:
         seconds = [float(one["seconds"]) for one in found]
         lines.append(f"seconds: median {np.median(seconds):.0f}, most {max(seconds):.0f}")

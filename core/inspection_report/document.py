@@ -15,6 +15,7 @@ from core.inspection_report.finding import (
     added_objects,
     blade_text,
     finding_objects,
+    is_relative,
     unattached_texts,
     verdict_text,
 )
@@ -23,7 +24,8 @@ from core.json_files import JsonObject
 from core.report.limits import limit_text, limits_document, limits_of
 from core.review.state import Review, Reviewed
 from core.scene.defect import MODEL_UNIT, DefectRecord
-from core.settings.limits import MM_PER_INCH, Limit
+from core.scene.size import MM_PER_INCH
+from core.settings.limits import Limit
 
 SCHEMA_VERSION = 1
 _DAY = len("YYYY-MM-DD")
@@ -66,7 +68,7 @@ def report_document(
     reviews = {} if reviewed is None else {one.name: one.review for one in reviewed.findings}
     compared = _compared(source, shown)
     findings = finding_objects(source, reviews, compared, inches=shown.inches)
-    coverage = [_coverage(model, source.rows.get(model), findings) for model in source.models]
+    coverage = [_coverage(model, source, findings) for model in source.models]
     return {
         "schema_version": SCHEMA_VERSION,
         "title": str(summary.get("label") or summary.get("external_id") or "Inspection"),
@@ -166,12 +168,11 @@ def _compared(source: ReportSource, shown: Shown) -> JsonObject | None:
 
 def _limits(compared: JsonObject, source: ReportSource, inches: bool) -> JsonObject:
     """The table of the shop in words, and what it says of the numbers of findings."""
-    zero = {model: (row or {}).get("zero_blade") is None for model, row in source.rows.items()}
     return {
         "rows": [{"line": limit["line"], "text": limit_text(limit, inches=inches)} for limit in compared["limits"]],
         "counts": [
             {
-                "text": blade_text(one["blade"], relative=one["blade"] is not None and zero.get(0, True)),
+                "text": blade_text(one["blade"], relative=is_relative(one["blade"], source)),
                 "verdict": verdict_text(one["verdict"]),
                 "reason": one["reason"],
             }
@@ -230,21 +231,27 @@ def _blade_order(blade: str) -> tuple[bool, int, str]:
     return not number.isdecimal(), int(number) if number.isdecimal() else 0, blade
 
 
-def _coverage(model: int, row: JsonObject | None, findings: Sequence[JsonObject]) -> JsonObject:
+def _coverage(model: int, source: ReportSource, findings: Sequence[JsonObject]) -> JsonObject:
     """What was seen of each blade of a model."""
+    row: JsonObject = source.rows.get(model) or {}
     own = [one for one in findings if one["model"] == model]
-    status = (row or {}).get("status") or UNKNOWN
+    status = row.get("status") or UNKNOWN
     known = status != UNKNOWN
-    reason = None if known else (row or {}).get("reason_text") or NO_ROW
-    blades = [_blade_seen(one, model, own, row or {}) for one in (row or {}).get("coverage") or ()] if known else []
-    return {"model": model, "status": status, "reason": reason, "count": (row or {}).get("count"), "blades": blades}
+    reason = None if known else row.get("reason_text") or NO_ROW
+    blades = [_blade_seen(one, model, own, source) for one in row.get("coverage") or ()] if known else []
+    return {"model": model, "status": status, "reason": reason, "count": row.get("count"), "blades": blades}
 
 
-def _blade_seen(one: Mapping[str, object], model: int, findings: Sequence[JsonObject], row: JsonObject) -> JsonObject:
-    name = f"{model}-B{one['blade']}" if model else str(one["blade"])
+def _blade_seen(
+    one: Mapping[str, object], model: int, findings: Sequence[JsonObject], source: ReportSource
+) -> JsonObject:
+    name = str(one["blade"])
+    if model:
+        row: JsonObject = source.rows.get(model) or {}
+        name = row.get("on_first", {}).get("names", {}).get(name, f"{model}-B{name}")
     return {
         "blade": name,
-        "text": blade_text(name, relative=row.get("zero_blade") is None),
+        "text": blade_text(name, relative=is_relative(name, source)),
         "findings": sum(str(finding["place"]["blade"]) == name for finding in findings),
         "share": one.get("share"),
         "views_2": one.get("views_2"),

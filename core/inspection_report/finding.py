@@ -11,8 +11,7 @@ from core.review.state import Review, Reviewed, ReviewedFinding
 from core.review.target import Target
 from core.review.words import ReviewState, TargetKind
 from core.scene.defect import MODEL_UNIT
-from core.scene.size import LengthUnit
-from core.settings.limits import MM_PER_INCH
+from core.scene.size import MM_PER_INCH, LengthUnit
 
 UNKNOWN = "unknown"
 UNSCALED = "unscaled"
@@ -68,7 +67,7 @@ def _finding(record: JsonObject, source: ReportSource, review: Review | None, in
         "name": f"D{record['id']}",
         "model": model,
         "label": record["label"],
-        "place": _place(record, model, source.rows.get(model), inches),
+        "place": _place(record, source, model, inches),
         "size": _size(record, inches),
         "width": _measure(record, "width", inches),
         "area": _measure(record, "area", inches),
@@ -81,12 +80,12 @@ def _finding(record: JsonObject, source: ReportSource, review: Review | None, in
     }
 
 
-def _place(record: JsonObject, model: int, row: JsonObject | None, inches: bool) -> JsonObject:
+def _place(record: JsonObject, source: ReportSource, model: int, inches: bool) -> JsonObject:
     """Where it lies on its blade. The row's own words; every part that is not known says so."""
-    told = (row or {}).get("findings") or ()
+    told = (source.rows.get(model) or {}).get("findings") or ()
     known: JsonObject = next((one for one in told if one.get("defect") == record["id"]), {})
-    blade, zero = record.get("blade"), (row or {}).get("zero_blade")
-    place: JsonObject = {"blade": blade, "relative": blade is not None and zero is None}
+    blade = record.get("blade")
+    place: JsonObject = {"blade": blade, "relative": is_relative(blade, source)}
     for name in ("side", "span", "chord", "edge_distance", "root_distance"):
         origin = known if record.get(name) in _NO_PART else record
         value = origin.get(name)
@@ -103,6 +102,12 @@ def _place(record: JsonObject, model: int, row: JsonObject | None, inches: bool)
         [blade_text(blade, relative=place["relative"]), _side(place), *shares, *filter(None, lengths)]
     )
     return place
+
+
+def is_relative(blade: str | None, source: ReportSource) -> bool:
+    """Whether the number of a blade counts from the first one seen, as those of further models (`1-B4`) always do."""
+    zero = (source.rows.get(0) or {}).get("zero_blade")
+    return blade is not None and (not str(blade).isdecimal() or zero is None)
 
 
 def blade_text(blade: object, *, relative: bool) -> str:

@@ -25,7 +25,7 @@ from core.mapping.surface import Surface
 from core.mapping.surface_rules import Matches
 from core.scene.frame import Crop, index_of_image
 from core.scene.views import Views, views_of
-from core.surface.ply import read_mesh
+from core.surface.ply import Mesh, read_mesh
 from core.surface.support import point_spacing
 from core.viewgraph import database_of, read_graph
 
@@ -58,8 +58,7 @@ def open_mapping_scene(
         threads: for casting.
         model: its number.
     """
-    views = views_of(open_model(model_dir))
-    mesh = oriented(read_mesh(mesh_path), views)
+    mesh, views = read_surface(model_dir, mesh_path)
     points = read_mesh(cloud_path).vertices
     with_boxes = [frame for frame, found in boxes.items() if found]
     # A frame without a box of its own is asked for nothing but its pose.
@@ -78,6 +77,20 @@ def open_mapping_scene(
         focal_px=mean_focal(views.camera),
         model=model,
     )
+
+
+def read_surface(model_dir: Path, mesh_path: Path) -> tuple[Mesh, Views]:
+    """A surface, its faces counter-clockwise seen from the cameras (`core.mapping.scene.oriented`), and the views.
+
+    Args:
+        model_dir: COLMAP model, image id = frame index + 1.
+        mesh_path: surface in its world frame.
+
+    Raises:
+        StageFailed: one of the two cannot be read.
+    """
+    views = views_of(open_model(model_dir))
+    return oriented(read_mesh(mesh_path), views), views
 
 
 def open_depth_maps(undistorted: Path, folders: Iterable[Path]) -> DepthMaps:

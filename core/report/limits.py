@@ -15,8 +15,8 @@ from core.json_files import JsonObject
 from core.report.tables import SCHEMA_VERSION
 from core.scene.defect import DefectRecord
 from core.scene.on_row import Side
-from core.scene.size import LengthUnit, Measure
-from core.settings.limits import ANY, MM_PER_INCH, Limit, Zone
+from core.scene.size import MM_PER_INCH, LengthUnit, Measure
+from core.settings.limits import ANY, Limit, zone_named
 
 SIGMAS = 2.0
 """By so many standard deviations a measure has to lie below or above a limit."""
@@ -62,7 +62,7 @@ class LimitCheck:
 
 
 _EDGES = (Side.EDGE, Side.LEADING_EDGE, Side.TRAILING_EDGE)
-_BARE_EDGE = {Side.EDGE: (Zone.LEADING_EDGE, Zone.TRAILING_EDGE)}
+_BARE_EDGE = {Side.EDGE: (Side.LEADING_EDGE, Side.TRAILING_EDGE)}
 
 
 def limits_document(limits: Sequence[Limit], records: Sequence[DefectRecord], *, inches: bool = False) -> JsonObject:
@@ -88,7 +88,7 @@ def limits_document(limits: Sequence[Limit], records: Sequence[DefectRecord], *,
     return {
         "schema_version": SCHEMA_VERSION,
         "sigmas": SIGMAS,
-        "limits": [asdict(limit) for limit in limits],
+        "limits": [{**asdict(limit), "zone": limit.zone or ANY} for limit in limits],
         "findings": findings,
         "counts": counts,
     }
@@ -96,7 +96,7 @@ def limits_document(limits: Sequence[Limit], records: Sequence[DefectRecord], *,
 
 def limits_of(document: JsonObject) -> tuple[Limit, ...]:
     """The limits that an object of ``limits.json`` was made with."""
-    return tuple(Limit(**{**row, "zone": Zone(row["zone"])}) for row in document["limits"])
+    return tuple(Limit(**{**row, "zone": zone_named(row["zone"])}) for row in document["limits"])
 
 
 def overall(checks: Sequence[LimitCheck]) -> tuple[LimitVerdict, str]:
@@ -190,8 +190,8 @@ def _applies(limit: Limit, record: DefectRecord) -> tuple[_Applies, str]:
     return (_Applies.UNKNOWN, " and ".join(unsure)) if unsure else (_Applies.YES, "")
 
 
-def _in_zone(zone: Zone, side: Side | None) -> _Applies:
-    if zone == Zone.ANY or (zone == Zone.EDGE and side in _EDGES) or (side is not None and zone.value == side.value):
+def _in_zone(zone: Side | None, side: Side | None) -> _Applies:
+    if zone in (None, side) or (zone == Side.EDGE and side in _EDGES):
         return _Applies.YES
     if side is None or side == Side.UNKNOWN or zone in _BARE_EDGE.get(side, ()):
         return _Applies.UNKNOWN
@@ -213,7 +213,7 @@ def _in_span(limit: Limit, record: DefectRecord) -> tuple[_Applies, str]:
 
 def limit_text(limit: JsonObject, *, inches: bool = False) -> str:
     """A row of the table in words."""
-    zone = "anywhere" if limit["zone"] == Zone.ANY else str(limit["zone"]).replace("_", " ")
+    zone = "anywhere" if limit["zone"] == ANY else str(limit["zone"]).replace("_", " ")
     where = (
         zone
         if (limit["span_from"], limit["span_to"]) == (0.0, 1.0)

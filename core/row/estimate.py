@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.mapping.surface import Surface
-from core.row.blades import Sheet, fit_sheet, seen_blades
+from core.row.blades import Sheet, fit_sheet
 from core.row.coverage import coverage_of, in_order, sightings
 from core.row.fit import best_contrast, refined
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast, overlap, sides
-from core.row.regular import MAX_OFF_PITCHES, worst_pair
+from core.row.regular import MAX_OFF_PITCHES, Differences, differences
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.section import section_of
 from core.row.seeds import seeds
@@ -45,6 +45,15 @@ LEAST_VIEWS = 3
 REPORTED_TURNS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
 ENDS_PERCENT = (0.5, 99.5)
 """Of the radii on blades: root and tip."""
+
+
+@dataclass(frozen=True)
+class Apart:
+    """The blades of a row, told apart."""
+
+    sheet: Sheet
+    contrast: float
+    differences: Differences
 
 
 def estimate_row(mesh: Mesh, views: Views, seed: int, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
@@ -92,10 +101,10 @@ def describe_row(
     if told.count is not None:
         found = refined(fine, Hypothesis(found.axis, 2 * np.pi / told.count), pitch_known=True)
         found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
-    refusal = refused(fine, found)
-    if refusal is not None:
-        return refusal
-    return _described(fine, even, found, views, Surface(mesh.vertices, mesh.faces), told)
+    apart = told_apart(fine, found)
+    if isinstance(apart, NoRow):
+        return apart
+    return _described(fine, even, apart, views, Surface(mesh.vertices, mesh.faces), told)
 
 
 def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, translations: F64) -> Hypothesis | None:
@@ -110,8 +119,8 @@ def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, transla
     return max(found, key=lambda item: item[0])[1] if found else None
 
 
-def refused(fine: SurfaceSample, row: Hypothesis) -> NoRow | None:
-    """Why a hypothesis is no row; None for one."""
+def told_apart(fine: SurfaceSample, row: Hypothesis) -> Apart | NoRow:
+    """The blades of a hypothesis, or why it is no row."""
     value = contrast(fine, row)
     if value < MIN_CONTRAST:
         return NoRow(UnknownRow.NO_REPETITION, value)
@@ -121,67 +130,41 @@ def refused(fine: SurfaceSample, row: Hypothesis) -> NoRow | None:
     if value < MIN_SHARE_KEPT * float(one + second) / 2:
         return NoRow(UnknownRow.NO_REPETITION, value)
     sheet = fit_sheet(fine, row)
-    blades = seen_blades(sheet, fine)
-    if len(blades) < LEAST_BLADES:
+    found = differences(sheet, fine)
+    if len(found.blades) < LEAST_BLADES:
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)
-    pair = worst_pair(sheet, fine)
-    if pair is not None and pair.off_pitches > MAX_OFF_PITCHES:
-        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value, pair)
+    if found.worst is not None and found.worst.off_pitches > MAX_OFF_PITCHES:
+        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value, found.worst)
     # After that: blades half a pitch off fill the troughs.
     if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)
-    return None
-
-
-def _deviations(sheet: Sheet, sample: SurfaceSample, blades: NDArray[np.int64]) -> F64:
-    """(k - 1,) by how much the step from each blade to the next seen differs from the pitch, in pitches.
-
-    Compared are the places that both show, or a blade of which another part is seen would seem to have moved.
-    """
-    on_blade = sides(sample, sheet.axis)
-    position = sheet.position(on_blade.points)
-    index = np.round(position).astype(np.int64)
-    steps = []
-    for one, other in pairwise(blades):
-        angle = float(other - one) * sheet.pitch_rad
-        here, there = on_blade.of(index == one), on_blade.of(index == other)
-        moved = sheet.axis.turned(here.points, angle)
-        found = there.tree.query(moved)
-        rows, near = np.asarray(found[1]), np.asarray(found[0]) < 4.0 * sample.spacing
-        if near.sum() < 10:
-            continue
-        gap = moved[near] - there.points[rows[near]]
-        across = (gap * there.normals[rows[near]]).sum(axis=1)
-        lever = (sheet.axis.tangential(moved[near]) * there.normals[rows[near]]).sum(axis=1)
-        _, radius, _ = sheet.axis.cylinder(moved[near])
-        arm = lever * radius
-        steps.append(-float((arm * across).sum() / max(float((arm**2).sum()), 1e-300)) / sheet.pitch_rad)
-    return np.array(steps or [0.0])
+    return Apart(sheet, value, found)
 
 
 def _described(
-    fine: SurfaceSample, even: SurfaceSample, row: Hypothesis, views: Views, surface: Surface, told: RowSettings
+    fine: SurfaceSample, even: SurfaceSample, apart: Apart, views: Views, surface: Surface, told: RowSettings
 ) -> BladeRow:
-    sheet = fit_sheet(fine, row)
-    blades = seen_blades(sheet, fine)
-    on_blade = sides(even, row.axis)
+    sheet, blades = apart.sheet, apart.differences.blades
+    axis, pitch = sheet.axis, sheet.pitch_rad
+    on_blade = sides(even, axis)
     seen, index = sightings(on_blade, views, surface), sheet.blade(on_blade.points)
     count = told.count
     first = in_order(seen, index, blades)
     numbers = told_numbers(first, told)
-    spread = _deviations(sheet, fine, blades)
-    sigma = row.pitch_rad * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
-    _, radius, _ = row.axis.cylinder(sides(fine, row.axis).points)
+    spread = apart.differences.steps
+    sigma = pitch * max(MIN_SIGMA_SHARE, float(spread.std()) / np.sqrt(len(spread))) if count is None else 0.0
+    _, radius, _ = axis.cylinder(sides(fine, axis).points)
     root, tip = np.percentile(radius, ENDS_PERCENT)
-    shares = overlap(sides(fine, row.axis), row.axis, [k * row.pitch_rad for k in REPORTED_TURNS], row.kernel(fine))
-    fewest = int(np.ceil(2 * np.pi / (row.pitch_rad + 2 * sigma) - 1e-6))
-    most = int(np.floor(2 * np.pi / (row.pitch_rad - 2 * sigma) + 1e-6))
+    kernel = Hypothesis(axis, pitch).kernel(fine)
+    shares = overlap(sides(fine, axis), axis, [k * pitch for k in REPORTED_TURNS], kernel)
+    fewest = int(np.ceil(2 * np.pi / (pitch + 2 * sigma) - 1e-6))
+    most = int(np.floor(2 * np.pi / (pitch - 2 * sigma) + 1e-6))
     return BladeRow(
         RowStatus.ESTIMATED if count is None else RowStatus.USER,
         sheet,
         sigma,
         (fewest, most),
-        contrast(fine, row),
+        apart.contrast,
         {f"{turn:g}": round(float(share), 4) for turn, share in zip(REPORTED_TURNS, shares, strict=True)},
         float(root),
         float(tip),

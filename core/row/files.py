@@ -1,4 +1,4 @@
-"""``found.json`` and ``blades.json``: what the stages `row` and `blades` hand on, in full precision."""
+"""``found.json``, ``blades.json`` and ``on_first.json``: what `row` and `blades` hand on, in full precision."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from core.json_files import JsonObject, read_json, write_json
 from core.row.blades import Sheet
 from core.row.model import BladeRow, Coverage, EdgeName, NoRow, RowStatus, UnknownRow
+from core.row.on_first import OnFirst
 from core.row.overlap import Hypothesis
 from core.row.regular import Irregularity
 from core.row.section import Edge, Section
@@ -18,6 +19,7 @@ from core.scene.on_row import Side
 
 _FOUND = "found.json"
 _BLADES = "blades.json"
+_ON_FIRST = "on_first.json"
 
 
 def write_found(folder: Path, found: Hypothesis | NoRow) -> None:
@@ -41,6 +43,18 @@ def read_blades(folder: Path) -> BladeRow | NoRow:
     """Read what `write_blades` wrote."""
     values = read_json(folder / _BLADES)
     return _no_row(values) if "reason" in values else _read_row(values)
+
+
+def write_on_first(folder: Path, found: OnFirst) -> None:
+    """Write how the row of a further model lies on that of the first, in the form of ``row.json``."""
+    write_json(folder / _ON_FIRST, found.to_dict())
+
+
+def read_on_first(folder: Path) -> JsonObject | None:
+    """Read what `write_on_first` wrote; None in the result of the first model."""
+    path = folder / _ON_FIRST
+    document: JsonObject | None = read_json(path) if path.is_file() else None
+    return document
 
 
 def _unknown(row: NoRow) -> JsonObject:

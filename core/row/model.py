@@ -129,6 +129,25 @@ class BladeRow:
         return np.array([self.sheet.start_rad + index * self.pitch_rad for index in ordered])
 
     @property
+    def _rising(self) -> int:
+        """1 where numbers rise with the index, else -1."""
+        return 1 if self.appears_rising == (self.direction != "reversed") else -1
+
+    def number(self, index: int) -> int | None:
+        """Of a blade that need not have been seen; None for one before number 1, where the whole count is not known."""
+        known = min(self.numbers)
+        number = self.numbers[known] + self._rising * (index - known)
+        low, high = self.count
+        if low == high:
+            return (number - 1) % low + 1
+        return number if number >= 1 else None
+
+    def index(self, number: int) -> int:
+        """The index that a number counts to from the blades seen."""
+        known = min(self.numbers)
+        return known + self._rising * (number - self.numbers[known])
+
+    @property
     def seen(self) -> dict[int, int]:
         """Place of every blade in order of first appearance along the row, from 1, by its number."""
         rising = sorted(self.numbers)

@@ -167,10 +167,3 @@ def blades_of_vertices(row: BladeRow, mesh: Mesh) -> I32:
         blade[index == own] = number
     blade[radial(row.axis, mesh.vertices, vertex_normals(mesh))] = 0
     return blade
-
-
-def blade_name(number: int | None, model: int) -> str | None:
-    """A blade as the column names it: of further models, whose offset is not known, with the model's number."""
-    if number is None:
-        return None
-    return f"{model}-B{number}" if model else str(number)

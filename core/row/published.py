@@ -5,21 +5,22 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import BadInput
 from core.flags import Flag, Verdict, in_order, verdict_by
-from core.io.sparse import open_model
 from core.json_files import JsonObject, read_json, replace_file, write_json
-from core.mapping.scene import oriented
+from core.mapping.load import read_surface
 from core.outputs import (
     CONFIDENCE,
     DEFECT_GLB,
     DEFECT_SURFACE,
     DEFECTS,
     DETECTIONS,
+    FRAMES,
     LIMITS,
     QUALITY,
     ROW,
@@ -31,25 +32,28 @@ from core.outputs import (
     model_folder,
     model_numbers,
 )
+from core.report.csv_form import read_csv
 from core.report.limits import limits_document, limits_of
 from core.report.tables import write_csv
 from core.row.estimate import UNTOLD, estimate_row
 from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
+from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, model_of_row, of_further, put_on_first
 from core.row.places import blades_of_vertices
 from core.row.rescaled import MEASURED, ChangeOfScale, changed_scale, scale_of_model
-from core.row.tables import RowOfModel, events_on_row, scale_of_row
+from core.row.tables import RowOfModel, events_on_row, row_document, scale_of_row
 from core.scene.defect import DefectRecord, EventRow
 from core.scene.detection import DetectionRow
 from core.scene.on_row import NOT_ON_A_ROW, ROW_COLUMNS
-from core.scene.size import Scale, scale_fields
-from core.scene.views import views_of
+from core.scene.size import Scale
 from core.settings.limits import Limit
 from core.settings.row import RowSettings
 from core.surface.colored_glb import write_glb
 from core.surface.ply import read_mesh, write_mesh
+from core.videos import moment
 
 SEED = 0
+_BETWEEN = re.compile(r"between frames (\d+) and (\d+)")
 _WRITTEN = ("blade", *ROW_COLUMNS)
 
 Rows = list[JsonObject]
@@ -58,6 +62,8 @@ Rows = list[JsonObject]
 
 def write_row(folder: Path, told: RowSettings = UNTOLD, limits: Sequence[Limit] | None = None) -> BladeRow | NoRow:
     """Find the row of every model of a result, and write ``row.json`` and the columns of the row.
+
+    Rows of further models are put onto that of the first.
 
     Every file is replaced at once, ``row.json`` last. Nothing else of the tables changes, and no defect's id. The
     coloured surface gets the vertex property `blade`. A radius that is told gives a scale: then lengths and areas of
@@ -82,10 +88,15 @@ def write_row(folder: Path, told: RowSettings = UNTOLD, limits: Sequence[Limit] 
     documents: dict[int, JsonObject] = {}
     found: dict[int, BladeRow | NoRow] = {}
     flags: dict[int, Sequence[Flag]] = {}
+    first: ModelOfRow | None = None
+    moments_s, jumps = _moments(folder / FRAMES), _jumps(folder / QUALITY)
     for number in model_numbers(folder):
         below = model_folder(folder, number)
-        where, change = _row_of(below, number, told, scale_of_model(folder, number))
-        own = [change.record(one) for one in defects if one.model == number]
+        one = _row_of(below, number, told, scale_of_model(folder, number), first, moments_s, jumps)
+        if number == 0:
+            first = one.shown
+        where, change = one.where, one.change
+        own = [change.record(record) for record in defects if record.model == number]
         detections = [change.detection(row) if row.model == number else row for row in detections]
         findings: Rows = []
         if isinstance(where, RowOfModel):
@@ -97,7 +108,7 @@ def write_row(folder: Path, told: RowSettings = UNTOLD, limits: Sequence[Limit] 
         defects = [next((new for new in own if new.id == old.id), old) for old in defects]
         found[number] = where.row if isinstance(where, RowOfModel) else where
         flags[number] = [*change.flags, *(where.flags if isinstance(where, NoRow) else ())]
-        documents[number] = {**found[number].to_dict(), "findings": findings, "scale": scale_fields(change.new)}
+        documents[number] = row_document(found[number], findings, change.new, one.on_first)
     names = (*_WRITTEN, *MEASURED)
     _write(folder / DETECTIONS, _changed(rows, detections, names))
     visits = [EventRow.from_dict(event) for event in events]
@@ -155,26 +166,65 @@ def _compare(folder: Path, limits: Sequence[Limit] | None, defects: Sequence[Def
         replace_file(path, lambda beside: write_json(beside, compared))
 
 
-def _row_of(folder: Path, model: int, told: RowSettings, old: Scale | None) -> tuple[RowOfModel | NoRow, ChangeOfScale]:
+@dataclass(frozen=True)
+class _Found:
+    """What was found of one model."""
+
+    where: RowOfModel | NoRow
+    change: ChangeOfScale
+    shown: ModelOfRow | None = None
+    """None without a surface."""
+    on_first: JsonObject | None = None
+    """Of a further model."""
+
+
+def _row_of(
+    folder: Path,
+    model: int,
+    told: RowSettings,
+    old: Scale | None,
+    first: ModelOfRow | None,
+    moments_s: Mapping[int, float],
+    jumps: Sequence[tuple[int, int]],
+) -> _Found:
     """The row of one model of a result, by the files below its folder, and its scale before and now.
 
     Writes the blades of its coloured surface, and the GLB of that.
     """
     same = ChangeOfScale(old, old)
+    on_first = OnFirst({}, NotOnFirst.NO_ROW)
     if not (folder / SURFACE).is_file() or not (folder / SPARSE).is_dir():
-        return NoRow(UnknownRow.NO_SURFACE), same
-    views = views_of(open_model(folder / SPARSE))
-    mesh = oriented(read_mesh(folder / SURFACE), views)
-    row = estimate_row(mesh, views, SEED, told)
+        return _Found(NoRow(UnknownRow.NO_SURFACE), same, on_first=on_first.to_dict() if model else None)
+    mesh, views = read_surface(folder / SPARSE, folder / SURFACE)
+    row = estimate_row(mesh, views, SEED, of_further(told) if model else told)
+    shown = model_of_row(row, mesh, views, SEED)
+    if first is not None:
+        row, on_first = put_on_first(first, shown, model, moments_s, told, jumps)
+    laid = on_first.to_dict() if model else None
     if isinstance(row, NoRow):
-        return row, same
+        return _Found(row, same, shown, laid)
     change = changed_scale(old, scale_of_row(row, told))
     if (folder / DEFECT_SURFACE).is_file():
         colored = read_mesh(folder / DEFECT_SURFACE)
         on_row = replace(colored, extra={**colored.extra, "blade": blades_of_vertices(row, colored)})
         replace_file(folder / DEFECT_SURFACE, lambda path: write_mesh(path, on_row, colored.comments))
         replace_file(folder / DEFECT_GLB, lambda path: write_glb(path, on_row, change.new))
-    return RowOfModel(row, mesh, views, model, change.new), change
+    return _Found(RowOfModel(row, mesh, views, model, change.new, laid), change, shown, laid)
+
+
+def _moments(path: Path) -> dict[int, float]:
+    """Moment of each frame on the one axis of all videos, s; none where the result has no table of frames."""
+    if not path.is_file():
+        return {}
+    rows = read_csv(path)
+    return {int(row["index"]): moment(int(row.get("video") or 0), float(row["time_s"])) for row in rows}
+
+
+def _jumps(path: Path) -> list[tuple[int, int]]:
+    """Neighbouring frames between which the pictures jump, as the flags of the result name them."""
+    flags = read_json(path)["flags"] if path.is_file() else []
+    named = [_BETWEEN.search(flag.get("where") or "") for flag in flags if flag["code"] == "picture_jumps"]
+    return [(int(found[1]), int(found[2])) for found in named if found is not None]
 
 
 def _without(row: DetectionRow) -> DetectionRow:

@@ -6,6 +6,7 @@ lie on each other; what is left over is a shift, a tilt or a turn that no row ha
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -58,8 +59,34 @@ class Irregularity:
         return f"blades {one} and {other} of the {self.seen} seen, counted about the axis"
 
 
-def worst_pair(sheet: Sheet, sample: SurfaceSample) -> Irregularity | None:
-    """The two blades of a row that lie on each other worst; None where no two show the same places.
+@dataclass(frozen=True)
+class Differences:
+    """By how much the blades of a row lie beside each other after the whole pitches between them."""
+
+    blades: I64
+    """(k,) indices on the sheet of those that were seen, ascending."""
+    of_pair: Mapping[tuple[int, int], F64]
+    """By the places in `blades` of two of them, the lower first: at the places that both show, in pitches, how far the
+    first one lies ahead of the second; those that share too little are left out."""
+
+    @property
+    def worst(self) -> Irregularity | None:
+        """The two blades that lie on each other worst; None where no two show the same places."""
+        found = [
+            Irregularity(float(np.sqrt((off**2).mean())), (one + 1, other + 1), len(self.blades))
+            for (one, other), off in self.of_pair.items()
+        ]
+        return max(found, key=lambda pair: pair.off_pitches, default=None)
+
+    @property
+    def steps(self) -> F64:
+        """(n,) by how much the step from a blade to the next one seen is larger than the pitch, in pitches."""
+        following = [-float(off.mean()) for (one, other), off in self.of_pair.items() if other == one + 1]
+        return np.array(following or [0.0])
+
+
+def differences(sheet: Sheet, sample: SurfaceSample) -> Differences:
+    """Turn every blade of a row onto every other one.
 
     Args:
         sheet: the blades.
@@ -68,17 +95,17 @@ def worst_pair(sheet: Sheet, sample: SurfaceSample) -> Irregularity | None:
     on_blade = sides(sample, sheet.axis)
     index, blades = sheet.blade(on_blade.points), seen_blades(sheet, sample)
     apart = [on_blade.of(index == blade) for blade in blades]
-    found = []
+    found = {}
     for one, other in combinations(range(len(blades)), 2):
         angle = float(blades[other] - blades[one]) * sheet.pitch_rad
         off = _off(sheet, apart[one], apart[other], angle, REACH_SPACINGS * sample.spacing)
         if off is not None:
-            found.append(Irregularity(off, (one + 1, other + 1), len(blades)))
-    return max(found, key=lambda pair: pair.off_pitches, default=None)
+            found[one, other] = off
+    return Differences(blades, found)
 
 
-def _off(sheet: Sheet, here: SurfaceSample, there: SurfaceSample, angle_rad: float, reach: float) -> float | None:
-    """By how much a blade turned onto another lies beside it, in pitches; None where they share too little.
+def _off(sheet: Sheet, here: SurfaceSample, there: SurfaceSample, angle_rad: float, reach: float) -> F64 | None:
+    """(n,) by how much a blade turned onto another lies ahead of it, in pitches; None where they share too little.
 
     The differences are smoothed by a plane over radius and height, so that roughness averages out and a tilt stays.
     """
@@ -99,8 +126,7 @@ def _off(sheet: Sheet, here: SurfaceSample, there: SurfaceSample, angle_rad: flo
         return None
     off, radius, height = off[shared], radius[shared], height[shared]
     terms = np.stack([np.ones(len(off)), radius - radius.mean(), height - height.mean()], axis=1)
-    plane = _robust_fit(terms, off)
-    return float(np.sqrt((plane**2).mean()))
+    return _robust_fit(terms, off)
 
 
 def _robust_fit(terms: F64, values: F64) -> F64:

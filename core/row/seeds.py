@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
-from core.geometry.pose import transform
-from core.row.overlap import Hypothesis, contrast, partners
+from core.geometry.similarity import Similarity
+from core.row.motion import fitted_motion
+from core.row.overlap import Hypothesis, contrast
 from core.row.sample import SurfaceSample
 from core.row.turn import screw_of
 
@@ -53,41 +53,19 @@ def seeds(sample: SurfaceSample, rotations: F64, translations: F64) -> list[Hypo
         translations: (f, 3)
     """
     found: list[tuple[float, Hypothesis]] = []
+    moving = sample.of(np.arange(0, len(sample), max(1, len(sample) // MOVED)))
+    widths = np.geomspace(4.0, 0.5, STEPS) * sample.spacing
     for i, j in pairs_of_views(len(rotations)):
         rotation = rotations[j].T @ rotations[i]
-        fitted = _fitted(sample, rotation, rotations[j].T @ (translations[i] - translations[j]))
-        found += [(contrast(sample, row), row) for row in _rows_of(sample, *fitted)]
+        start = Similarity(1.0, rotation, rotations[j].T @ (translations[i] - translations[j]))
+        motion = fitted_motion(sample, moving, start, widths, moving.points.mean(axis=0))
+        found += [(contrast(sample, row), row) for row in _rows_of(sample, motion)]
     found.sort(key=lambda item: -item[0])
     return _different([row for _, row in found])
 
 
-def _fitted(sample: SurfaceSample, rotation: F64, translation: F64) -> tuple[F64, F64]:
-    """A motion fitted to the surface point to plane (Chen and Medioni 1992), with Cauchy weights that narrow."""
-    some = slice(None, None, max(1, len(sample) // MOVED))
-    points, facing = sample.points[some], sample.normals[some]
-    middle = points.mean(axis=0)
-    widths = np.geomspace(4.0, 0.5, STEPS) * sample.spacing
-    for width in widths:
-        moved = transform(points, rotation, translation)
-        found = partners(moved, facing @ rotation.T, sample)
-        use = np.flatnonzero(found.fits & (np.abs(found.across) < 6.0 * width))
-        if len(use) < 30:
-            break
-        normals, residual = sample.normals[found.rows[use]], found.across[use]
-        arms = moved[use] - middle
-        jacobian = np.hstack([np.cross(arms, normals), normals])
-        weight = 1.0 / (1.0 + (residual / width) ** 2)
-        weighted = jacobian * weight[:, None]
-        size = max(float((arms**2).sum(axis=1).mean()), 1e-300)
-        damping = 1e-3 * weight.sum() * np.diag([size, size, size, 1.0, 1.0, 1.0])
-        step = -np.linalg.solve(weighted.T @ jacobian + damping, weighted.T @ residual)
-        turn = Rotation.from_rotvec(step[:3]).as_matrix()
-        rotation, translation = turn @ rotation, turn @ (translation - middle) + middle + step[3:]
-    return rotation, translation
-
-
-def _rows_of(sample: SurfaceSample, rotation: F64, translation: F64) -> list[Hypothesis]:
-    screw = screw_of(rotation, translation)
+def _rows_of(sample: SurfaceSample, motion: Similarity) -> list[Hypothesis]:
+    screw = screw_of(motion.rotation, motion.shift)
     if screw is None:
         return []
     axis = screw.axis.nearest_to(sample.points.mean(axis=0))

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from core.json_files import JsonObject
 from core.row.model import BladeRow, NoRow
-from core.row.places import OnRow, blade_name, normals_at, on_row
+from core.row.places import OnRow, normals_at, on_row
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow
 from core.scene.detection import DetectionRow
-from core.scene.size import LengthUnit, Scale, ScaleSource
+from core.scene.size import LengthUnit, Scale, ScaleSource, scale_fields
 from core.scene.views import Views
 from core.settings.row import RowSettings
 from core.surface.ply import Mesh
@@ -38,11 +38,20 @@ class RowOfModel:
     """Of the model."""
     model: int = 0
     scale: Scale | None = None
+    on_first: JsonObject | None = None
+    """Of a further model: how it lies on the row of the first (`core.row.on_first`)."""
 
     @property
     def unit(self) -> LengthUnit:
         """Of the lengths in its columns."""
         return MODEL_UNIT if self.scale is None else LengthUnit.MM
+
+    def name(self, number: int | None) -> str | None:
+        """A blade as the tables name it: by the first model's numbers, or by its own with the model's before them."""
+        if number is None or not self.model:
+            return None if number is None else str(number)
+        names: Mapping[str, str] = (self.on_first or {}).get("names", {})
+        return names.get(str(number), f"{self.model}-B{number}")
 
     def detections(self, rows: Sequence[DetectionRow], sigmas: Mapping[int, float | None]) -> list[DetectionRow]:
         """The rows, those with a place in this model with their blade and where on it they lie.
@@ -68,8 +77,7 @@ class RowOfModel:
         return seen
 
     def _with(self, row: DetectionRow, place: OnRow) -> DetectionRow:
-        name = blade_name(place.blade, self.model)
-        return replace(row, blade=name, on_row=place.columns, length_unit=self.unit)
+        return replace(row, blade=self.name(place.blade), on_row=place.columns, length_unit=self.unit)
 
     def records(self, records: Sequence[DefectRecord]) -> tuple[list[DefectRecord], list[JsonObject]]:
         """The records of this model with their blade and where on it they lie, and the same as findings of the row."""
@@ -81,7 +89,7 @@ class RowOfModel:
         found = on_row(self.row, places, normals, [record.centroid_sigma for record in records])
         scaled = [place.scaled(self.scale) for place in found]
         placed = [
-            replace(record, blade=blade_name(place.blade, self.model), on_row=place.columns)
+            replace(record, blade=self.name(place.blade), on_row=place.columns)
             for record, place in zip(records, scaled, strict=True)
         ]
         findings = [
@@ -89,6 +97,14 @@ class RowOfModel:
             for record, place in zip(records, scaled, strict=True)
         ]
         return placed, findings
+
+
+def row_document(
+    row: BladeRow | NoRow, findings: Sequence[JsonObject], scale: Scale | None, on_first: JsonObject | None
+) -> JsonObject:
+    """The object of ``row.json``; `on_first` only of further models."""
+    further = {} if on_first is None else {"on_first": on_first}
+    return {**row.to_dict(), "findings": list(findings), "scale": scale_fields(scale), **further}
 
 
 def events_on_row(events: Sequence[EventRow], records: Sequence[DefectRecord]) -> list[EventRow]:

@@ -164,7 +164,8 @@ class DetectionRow:
     confidence: float | None
     """Probability that the detection is real and its place right."""
     blade: str | None
-    """Blade that it lies on, where the row of blades is known; of a further model `1-B4` is blade 4 of model 1."""
+    """Blade that it lies on, where the row of blades is known; `1-B4` is blade 4 of model 1 where its number on the
+    first model's row is not known."""
     defect_id: int | None
     """Record of defects.json that it belongs to."""
     model: int | None

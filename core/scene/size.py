@@ -9,6 +9,9 @@ from math import hypot, sqrt
 
 from core.json_files import JsonObject
 
+MM_PER_INCH = 25.4
+"""Some people read inches; files are in mm."""
+
 
 class LengthUnit(StrEnum):
     """What a length counts."""

@@ -8,32 +8,20 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from enum import StrEnum
 
 from pydantic import field_validator
 
 from core.errors import BadInput
+from core.scene.on_row import Side
+from core.scene.size import MM_PER_INCH
 from core.settings.base import Group, option
 
-MM_PER_INCH = 25.4
 MAX_LIMITS = 1000
 MAX_BYTES = 1 << 16
 ANY = "any"
-"""Damage: whatever its label."""
-
-
-class Zone(StrEnum):
-    """The part of a blade that a limit is for."""
-
-    ANY = "any"
-    CONCAVE = "concave"
-    CONVEX = "convex"
-    LEADING_EDGE = "leading_edge"
-    TRAILING_EDGE = "trailing_edge"
-    EDGE = "edge"
-    """Either edge."""
-    TIP = "tip"
-    PLATFORM = "platform"
+"""As a damage whatever its label, as a zone anywhere."""
+ZONES = tuple(side for side in Side if side not in (Side.OTHER, Side.UNKNOWN))
+"""Parts of a blade that a limit may be for; `edge` is for either edge."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +30,8 @@ class Limit:
 
     line: int
     """Of the file, from 1; of a JSON list the number of the entry."""
-    zone: Zone = Zone.ANY
+    zone: Side | None = None
+    """One of `ZONES`; None is anywhere."""
     damage: str = ANY
     """Label of the findings that it is for, whatever the case of its letters."""
     span_from: float = 0.0
@@ -125,9 +114,9 @@ def _require_known(line: int, names: list[str]) -> None:
 
 
 def _limit(line: int, cells: Mapping[str, str]) -> Limit:
-    zone = cells.get("zone", Zone.ANY).lower().replace(" ", "_")
-    if zone not in tuple(Zone):
-        raise _bad(line, f"there is no zone '{cells['zone']}'; there are {', '.join(Zone)}")
+    zone = cells.get("zone", ANY).lower().replace(" ", "_")
+    if zone not in (ANY, *ZONES):
+        raise _bad(line, f"there is no zone '{cells['zone']}'; there are {', '.join((ANY, *ZONES))}")
     lengths = {f"{name}_mm": _length(line, cells, name) for name in _LENGTHS}
     count = _count(line, cells["count"]) if "count" in cells else None
     if count is None and not any(lengths.values()):
@@ -138,7 +127,12 @@ def _limit(line: int, cells: Mapping[str, str]) -> Limit:
     )
     if not 0.0 <= start < end <= 1.0:
         raise _bad(line, f"the span from {start:g} to {end:g} is none: 0 <= span_from < span_to <= 1")
-    return Limit(line, Zone(zone), cells.get("damage", ANY), start, end, **lengths, count=count)
+    return Limit(line, zone_named(zone), cells.get("damage", ANY), start, end, **lengths, count=count)
+
+
+def zone_named(name: str) -> Side | None:
+    """The zone that a table, or ``limits.json``, names so; None is anywhere."""
+    return None if name == ANY else Side(name)
 
 
 def _length(line: int, cells: Mapping[str, str], name: str) -> float | None:

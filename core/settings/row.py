@@ -2,14 +2,44 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from typing import Literal, Self
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 from core.settings.base import Group, option
 
 LEAST_BLADES, MOST_BLADES = 7, 180
 """Of a whole row."""
+
+
+_SAME = re.compile(r"(\d{1,3})-B(\d{1,3})=(\d{1,3})")
+
+
+@dataclass(frozen=True)
+class SameBlade:
+    """A blade that two models show, by its numbers in both."""
+
+    model: int
+    """The further model."""
+    number: int
+    """In that model: in order of first appearance."""
+    first: int
+    """On the row of the first model, as the tables name it."""
+
+
+def same_blades(text: str | None) -> tuple[SameBlade, ...]:
+    """The pairs that `row.same_blade` tells; ValueError for what is no list of pairs, or tells of one model twice."""
+    if text is None:
+        return ()
+    pairs = [_SAME.fullmatch(pair.strip()) for pair in text.split(",")]
+    found = tuple(SameBlade(*map(int, pair.groups())) for pair in pairs if pair is not None)
+    if len(found) < len(pairs) or any(one.model == 0 for one in found):
+        raise ValueError(f"'{text}' does not read like 1-B4=2: blade 4 of model 1 is blade 2 of the first")
+    if len({one.model for one in found}) < len(found):
+        raise ValueError("one blade of each further model is enough")
+    return found
 
 
 class RowSettings(Group):
@@ -45,6 +75,19 @@ class RowSettings(Group):
         None, "standard deviation of row.radius_mm; none = 1 % of it", unit="mm", source="user", ge=0
     )
     radius_at: Literal["root", "tip"] = option("root", "the end of the blades that row.radius_mm is of", source="user")
+
+    same_blade: str | None = option(
+        None,
+        "blades that two models show, as 1-B4=2 (blade 4 of model 1 is blade 2 of the first), with commas between; "
+        "none = by frames of both or by the turn between them, else unknown",
+        source="user",
+    )
+
+    @field_validator("same_blade")
+    @classmethod
+    def _pairs(cls, text: str | None) -> str | None:
+        same_blades(text)
+        return text
 
     @model_validator(mode="after")
     def _whole(self) -> Self:

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from core.io.sparse import read_model
+from core.io.sparse import model_folder
 from core.io.surface import supported_mesh
-from core.mapping.scene import oriented
+from core.mapping.load import read_surface
 from core.products.surface import RowProduct
 from core.row.estimate import search_row
 from core.row.files import write_found
 from core.row.model import NoRow
-from core.scene.views import views_of
 from core.stage import StageTask
-from core.surface.ply import read_mesh
 
 
 def run(task: StageTask) -> RowProduct:
     """Write ``found.json``: the row, or why no motion between views looks like a turn."""
-    views = views_of(read_model(task.input("extend")))
-    mesh = oriented(read_mesh(supported_mesh(task.input("mesh"))), views)
+    mesh, views = read_surface(model_folder(task.input("extend")), supported_mesh(task.input("mesh")))
     task.report(1, 4, "searching the row of blades")
     found = search_row(mesh, views, task.settings.seed)
     write_found(task.out, found)

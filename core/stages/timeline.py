@@ -16,13 +16,12 @@ from core.measure.scale import find_scale
 from core.outputs import ROW, ROW_MAP
 from core.products.search import ExtendProduct
 from core.products.surface import TimelineProduct
-from core.row.files import read_blades
+from core.row.files import read_blades, read_on_first
 from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.places import blades_of_vertices
-from core.row.tables import RowOfModel, events_on_row, scale_of_row
+from core.row.tables import RowOfModel, events_on_row, row_document, scale_of_row
 from core.scene.methods import Grouped, Grouping
-from core.scene.size import scale_fields
 from core.scene.views import Views, views_of
 from core.stage import StageTask
 from core.stages.map_defects import open_scene_of, world_comments
@@ -40,15 +39,18 @@ def run(task: StageTask) -> TimelineProduct:
     """
     mesh = read_mesh(supported_mesh(task.input("mesh")))
     views = views_of(read_model(task.input("extend")))
-    row = read_blades(task.input("blades")) if task.has("blades") else NoRow(UnknownRow.NOT_COMPUTED)
-    found = _grouping(task, mesh, views, row).group()
+    row, on_first = _row(task)
+    grouping = _grouping(task, mesh, views, row)
+    found = grouping.group()
     extra = {**mesh.extra, "defect_id": found.vertex_defect}
     findings: list[JsonObject] = []
     if isinstance(row, BladeRow):
         task.report(3, 4, "finding the blades of the defects")
-        found, findings = _on_row(found, RowOfModel(row, oriented(mesh, views), views, task.submodel, found.scale))
+        # The rules of the thesis open no scene, in which the surface has been turned towards the cameras before.
+        facing = grouping.scene.mesh if isinstance(grouping, SurfaceGrouping) else oriented(mesh, views)
+        found, findings = _on_row(found, RowOfModel(row, facing, views, task.submodel, found.scale, on_first))
         extra["blade"] = blades_of_vertices(row, mesh)
-    document = {**row.to_dict(), "findings": findings, "scale": scale_fields(found.scale)}
+    document = row_document(row, findings, found.scale, on_first)
     write_json(task.out / ROW, document)
     (task.out / ROW_MAP).write_text(row_map(document), encoding="utf-8")
     write_timeline(task.out, found.events, found.defects, found.confidences)
@@ -60,6 +62,13 @@ def run(task: StageTask) -> TimelineProduct:
     write_cameras(task.out, views)
     task.report(4, 4, "timeline written")
     return found.product
+
+
+def _row(task: StageTask) -> tuple[BladeRow | NoRow, JsonObject | None]:
+    """The row of the model, and how that of a further one lies on the first's."""
+    if not task.has("blades"):
+        return NoRow(UnknownRow.NOT_COMPUTED), None
+    return read_blades(task.input("blades")), read_on_first(task.input("blades"))
 
 
 def _on_row(found: Grouped[TimelineProduct], where: RowOfModel) -> tuple[Grouped[TimelineProduct], list[JsonObject]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,7 @@ import pytest
 
 from bench.accuracy import true_coverage as true_coverage_module
 from bench.accuracy.result import load_result
-from bench.accuracy.score import score_row_of
+from bench.accuracy.score import score_result, score_row_of
 from bench.accuracy.table import _row_rows
 from bench.accuracy.true_coverage import true_coverage
 from bench.accuracy.true_row import TrueRow
@@ -162,6 +163,62 @@ def test_what_is_wrong_is_counted(scored: Callable[[Document], Document]) -> Non
     assert "coverage" not in found, "nothing says which number is which blade"
     assert (one["blade_unknown"], one["side_wrong"], one["span_within"]) == (one["count"], one["count"], 0)
     assert scored({"columns": {"side": "unknown"}})["detections"]["side_unknown"] == one["count"]
+
+
+def test_sizes_are_scored_with_the_row(
+    made: tuple[Path, Path], truth: Truth, scored: Callable[[Document], Document]
+) -> None:
+    path = made[1] / "mapping/defects.json"
+    before = path.read_text()
+    records = json.loads(before)
+    for record in records:
+        place = TURNED.inv().apply((np.array(record["centroid"]) - SHIFT)[None] * MM_PER_UNIT)
+        near = min(truth.defects.values(), key=lambda one: np.linalg.norm(place - one.center))
+        length = near.sizes["length"]
+        record |= {"length": 1.1 * length, "length_sigma": 0.06 * length, "length_unit": "mm", "size_from": "box"}
+    path.write_text(json.dumps(records))
+    found = scored({})
+    path.write_text(before)
+    errors = found["sizes"]["box"]["length"]
+    assert [error for error, _ in errors] == pytest.approx([0.1] * len(records))
+    assert all(inside for _, inside in errors)
+    lines = dict(_row_rows("0", found))
+    assert lines["length by box: error median / 95 %, within 2 sigma, count"] == f"0.1 / 0.1 / 1 / {len(records)}"
+    row = result("sizes", "estimated", Expected.ROW, found)
+    assert markdown([row]).splitlines()[2].split("|")[-4].strip() == f"box 10 / 10 / 100 % of {len(records)}"
+    assert f"length by box: median / 95 % off, inside 2 sigma: 10 / 10 / 100 % of {2 * len(records)}" in totals(
+        [row] * 2
+    )
+
+
+def test_a_further_model_is_held_against_the_numbers_of_the_first(
+    made: tuple[Path, Path], scored: Callable[[Document], Document], tmp_path: Path
+) -> None:
+    scored({})
+    folder = tmp_path / "result"
+    shutil.copytree(made[1], folder)
+    further = folder / "models/1"
+    further.mkdir(parents=True)
+    for name in ("sparse", "dense"):
+        shutil.copytree(folder / name, further / name)
+    row = json.loads((folder / "row.json").read_text())
+    # The same blades, counted from the other end: 1, 2, 3 are 3, 2, 1 of the first model.
+    blades = [{"number": n, "seen": n, "angle_deg": -PITCH_DEG * n} for n in (1, 2, 3)]
+    laid = {"same_row": True, "reason": None, "offset_from": "turning"}
+    rows = json.loads((folder / "mapping/detections.json").read_text())
+    for more in (0, 1):
+        named = [{**one, "model": 1, "blade": str(int(one["blade"]) + more)} for one in rows]
+        (folder / "mapping/detections.json").write_text(json.dumps([*rows, *named]))
+        right = more == 0
+        on_first = {**laid, "names": {str(n): str(4 - n + more) for n in (1, 2, 3)}}
+        (further / "row.json").write_text(json.dumps({**row, "blades": blades, "on_first": on_first}))
+        found = score_result(folder, made[0])["rows"]
+        assert found["1"]["on_first"] == {**laid, "right": right}
+        assert found["0"]["detections"]["blade_right"] == len(rows)
+        assert "on_first" not in found["0"]
+        line = dict(_row_rows("1", found["1"]))["on the row of the first model; its blades' numbers right"]
+        assert line == f"yes; {'yes' if right else 'no'} (by turning)"
+        assert found["1"]["detections"]["blade_right"] == len(rows), "up to one offset"
 
 
 def test_numbers_that_go_round_are_one_offset(scored: Callable[[Document], Document]) -> None:

@@ -58,3 +58,15 @@ def walk(count: int, turn_pitches: float = 3.0, away: float = 60.0) -> Views:
         translations.append(-rotation @ centre)
     camera = pycolmap.Camera(model="PINHOLE", width=960, height=720, params=[480.0, 480.0, 480.0, 360.0])
     return Views(np.arange(count), np.array(rotations), np.array(translations), camera)
+
+
+def sparse_of(views: Views) -> pycolmap.Reconstruction:
+    """A model without points that has these views."""
+    model = pycolmap.Reconstruction()
+    views.camera.camera_id = 1
+    model.add_camera_with_trivial_rig(views.camera)
+    for k, image_id in enumerate(views.image_ids):
+        image = pycolmap.Image(name=f"{image_id - 1:04d}.jpg", camera_id=1, image_id=image_id)
+        pose = pycolmap.Rigid3d(np.hstack([views.R[k], views.t[k][:, None]]))
+        model.add_image_with_trivial_frame(image, pose)
+    return model

@@ -84,6 +84,14 @@ def test_what_was_not_seen_of_each_blade_is_said_and_counted(tmp_path: Path) -> 
     assert "1 detections have no place: the time of the detection lies outside the video" in said
 
 
+def test_a_further_model_on_the_same_row_has_the_first_ones_numbers_where_they_are_known(tmp_path: Path) -> None:
+    folder = changed(tmp_path / "result")
+    write_json(folder / "row.json", {**ROW, "zero_blade": 1})
+    write_json(folder / "models/1/row.json", {**ROW, "on_first": {"names": {"2": "7"}}})
+    _, second = document_of(folder)["coverage"]
+    assert [one["text"] for one in second["blades"]] == ["blade 1-B1 (relative)", "blade 7"]
+
+
 def test_why_the_row_is_unknown_is_said(tmp_path: Path) -> None:
     folder = changed(tmp_path / "result")
     write_json(folder / "row.json", {"status": "unknown", "reason": "no_repetition", "reason_text": "a hub"})

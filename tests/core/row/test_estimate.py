@@ -13,7 +13,7 @@ import pytest
 from bench.scenes.blades import surface_point
 from core.row import estimate
 from core.row.blades import fit_sheet, seen_blades
-from core.row.estimate import MIN_CONTRAST, estimate_row, refused, told_numbers
+from core.row.estimate import MIN_CONTRAST, Apart, estimate_row, told_apart, told_numbers
 from core.row.files import read_blades, read_found, write_blades, write_found
 from core.row.map import row_map
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
@@ -228,7 +228,7 @@ def test_without_a_surface_no_row_is_known() -> None:
 def test_a_hub_does_not_hide_how_blades_repeat() -> None:
     points = thinned(sample_surface(blades(3, hub=True), 0), 4000)
     row = Hypothesis(TRUE_AXIS, PITCH_RAD)
-    assert refused(points, row) is None
+    assert isinstance(told_apart(points, row), Apart)
     alone = thinned(sample_surface(blades(3), 0), 4000)
     assert contrast(points, row) == pytest.approx(contrast(alone, row), abs=0.05)
     hub = thinned(sample_surface(blades(0, hub=True), 0), 1000)
@@ -243,8 +243,8 @@ def test_two_views_tell_no_row() -> None:
 
 def test_two_blades_are_too_few_though_they_fit_each_other() -> None:
     points = thinned(sample_surface(blades(2), 0), 3000)
-    found = refused(points, Hypothesis(TRUE_AXIS, PITCH_RAD))
-    assert found is not None
+    found = told_apart(points, Hypothesis(TRUE_AXIS, PITCH_RAD))
+    assert isinstance(found, NoRow)
     assert found.reason == UnknownRow.TOO_FEW_BLADES
     assert found.contrast is not None
     assert found.contrast > MIN_CONTRAST

@@ -7,9 +7,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-import cv2  # noqa: F401  (before pycolmap)
 import numpy as np
-import pycolmap
 import pytest
 import trimesh
 
@@ -34,7 +32,7 @@ from core.scene.on_row import ROW_COLUMNS
 from core.scene.size import LengthUnit, Measure, Scale, Size
 from core.settings.limits import parse_limits
 from core.surface.ply import write_mesh
-from tests.core.making_blades import PITCH_RAD, SCENE, blades, walk
+from tests.core.making_blades import PITCH_RAD, SCENE, blades, sparse_of, walk
 from tests.core.making_rows import defect, mapped, unplaced
 
 pytestmark = pytest.mark.slow
@@ -48,16 +46,7 @@ def published(folder: Path) -> Path:
     for name in ("dense", "mapping", "sparse"):
         (folder / name).mkdir(parents=True)
     write_mesh(folder / "dense" / "mesh_poisson.ply", blades(3))
-    views = walk(5)
-    model = pycolmap.Reconstruction()
-    camera = views.camera
-    camera.camera_id = 1
-    model.add_camera_with_trivial_rig(camera)
-    for k in range(len(views)):
-        image = pycolmap.Image(name=f"{k}.png", camera_id=1, image_id=k + 1)
-        pose = pycolmap.Rigid3d(np.hstack([views.R[k], views.t[k][:, None]]))
-        model.add_image_with_trivial_frame(image, pose)
-    model.write_binary(folder / "sparse")
+    sparse_of(walk(5)).write_binary(folder / "sparse")
     places = [surface_point(SCENE, b, s, 0.3, 1) for b, s in zip(TRUE_BLADES, SPANS, strict=True)]
     rows = [mapped(k, (float(p[0]), float(p[1]), float(p[2]))).to_dict() for k, p in enumerate(places)]
     rows.append(unplaced(4).to_dict())

@@ -11,12 +11,12 @@ from scipy.spatial.transform import Rotation
 
 from core.flags import Severity
 from core.row.blades import fit_sheet
-from core.row.estimate import refused
+from core.row.estimate import Apart, told_apart
 from core.row.files import read_blades, write_blades
 from core.row.fit import refined
 from core.row.model import NoRow, UnknownRow
 from core.row.overlap import Hypothesis
-from core.row.regular import MAX_OFF_PITCHES, worst_pair
+from core.row.regular import MAX_OFF_PITCHES, differences
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.turn import Axis
 from core.surface.ply import Mesh
@@ -77,8 +77,8 @@ def fitted(sample: SurfaceSample) -> Hypothesis:
 )
 def test_a_wrongly_welded_model_is_no_row_and_is_flagged(mesh: Mesh) -> None:
     sample = points(mesh)
-    found = refused(sample, fitted(sample))
-    assert found is not None
+    found = told_apart(sample, fitted(sample))
+    assert isinstance(found, NoRow)
     assert found.reason == UnknownRow.PITCH_NOT_CONSTANT
     (flag,) = found.flags
     assert (flag.code, flag.severity, flag.threshold) == ("row_irregular", Severity.WARNING, MAX_OFF_PITCHES)
@@ -92,12 +92,16 @@ def test_a_wrongly_welded_model_is_no_row_and_is_flagged(mesh: Mesh) -> None:
 @pytest.mark.parametrize("mesh", [welded(), wavy(welded(), 0.3, 5.0)], ids=["true", "wavy"])
 def test_a_right_model_is_a_row_without_a_flag(mesh: Mesh) -> None:
     sample = points(mesh)
-    assert refused(sample, fitted(sample)) is None
+    found = told_apart(sample, fitted(sample))
+    assert isinstance(found, Apart)
+    assert np.abs(found.differences.steps).max() < 0.02
 
 
 def test_the_worst_pair_tells_by_how_much(tmp_path: Path) -> None:
     sample = points(welded(pitches=0.3))
-    pair = worst_pair(fit_sheet(sample, TRUE), sample)
+    found = differences(fit_sheet(sample, TRUE), sample)
+    assert found.steps.tolist() == pytest.approx([0.0, 0.0, 0.3, 0.0, 0.0], abs=0.02)
+    pair = found.worst
     assert pair is not None
     assert pair.off_pitches == pytest.approx(0.3, abs=0.02)
     assert "blades 1 and" in pair.where or "blades 2 and" in pair.where or "blades 3 and" in pair.where

@@ -7,16 +7,17 @@ import json
 import pytest
 
 from core.errors import BadInput
+from core.scene.on_row import Side
 from core.settings import make_settings
-from core.settings.limits import Limit, Zone, parse_limits
+from core.settings.limits import Limit, parse_limits
 
 TABLE = (
     "zone,damage,span_from,span_to,length_mm,depth_in,count\r\n"
     "Leading edge,Nick,,,0.76,,3\r\n\r\nany,dent,0,0.3,1.5,0.01,\r\n"
 )
 ROWS = (
-    Limit(2, Zone.LEADING_EDGE, "Nick", 0.0, 1.0, 0.76, None, 3),
-    Limit(4, Zone.ANY, "dent", 0.0, 0.3, 1.5, 25.4 * 0.01, None),
+    Limit(2, Side.LEADING_EDGE, "Nick", 0.0, 1.0, 0.76, None, 3),
+    Limit(4, None, "dent", 0.0, 0.3, 1.5, 25.4 * 0.01, None),
 )
 
 

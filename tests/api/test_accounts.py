@@ -16,6 +16,8 @@ from store.keys import Keys
 from tests.api.callers import ANY, FREE, HIDDEN, OF_AN_ACCOUNT, ROUTES, Headers, Place, key_id
 from tests.api.conftest import Backend
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def place(backend: Backend) -> Place:

@@ -29,6 +29,8 @@ from tests.api.conftest import Backend, wait_until
 from tests.databases import BOTH, database_url
 from tests.store.small_plan import GRAPH
 
+pytestmark = pytest.mark.slow
+
 STREAM = {"Accept": "text/event-stream"}
 Event = tuple[int | None, str, dict[str, Any]]
 LIFE = [

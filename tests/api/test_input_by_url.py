@@ -25,6 +25,8 @@ from store.outbound import Outbound
 from tests.api.conftest import Backend
 from tests.api.file_server import DATA, HERE, Files, files_served
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:

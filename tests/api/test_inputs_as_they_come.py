@@ -16,6 +16,8 @@ from PIL import Image
 from tests.core.making_videos import picture
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     ("video", "annotations"),

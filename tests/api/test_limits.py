@@ -27,6 +27,8 @@ from tests.api.conftest import ROOT, TUS, Backend, client_of, wait_until
 from tests.api.test_submit import leftovers, post, rows
 from tests.databases import BOTH, database
 
+pytestmark = pytest.mark.slow
+
 AT_ONCE = 50
 GIB = 1 << 30
 

@@ -28,6 +28,8 @@ from tests.api.conftest import VIDEO, Backend, client_of, wait_until
 from tests.api.test_submit import leftovers, post, rows
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 BIG = INPUTS / "big180.mp4"
 
 

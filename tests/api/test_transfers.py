@@ -33,6 +33,8 @@ from tests.api.file_server import DATA, HERE, Files, files_served
 from tests.api.test_input_by_url import Place, kept, make_place, refused, uploads_left
 from tests.databases import BOTH, database
 
+pytestmark = pytest.mark.slow
+
 MIB = 1 << 20
 ONE_EACH = {"max_open_uploads_per_owner": 1, "max_fetches_per_owner": 1}
 """What is taken over is nothing more: with these limits it would be refused otherwise."""

@@ -12,6 +12,8 @@ from bench.mutate.command import Fate, draw, judge
 from bench.mutate.mutants import mutants_of
 from bench.mutate.reach import Reach, measure, static_lines
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

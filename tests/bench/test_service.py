@@ -11,6 +11,8 @@ from bench.service import interrupted, transfers
 from bench.service.overhead import covered
 from bench.speed.timing import Table
 
+pytestmark = pytest.mark.slow
+
 
 def at(second: float) -> datetime:
     return datetime(2026, 1, 1, tzinfo=UTC) + timedelta(seconds=second)

@@ -14,6 +14,8 @@ from store.inspections import Inspections
 from store.models import Attempt
 from tests.store.small_plan import FILES, GRAPH
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -12,7 +12,7 @@ from tests.core.study.making_scenes import write_script
 from tests.web.opening import Open, Opened
 
 pytest.importorskip("playwright.sync_api")
-pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell")]
+pytestmark = [pytest.mark.browser, pytest.mark.tool("chromium-headless-shell"), pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

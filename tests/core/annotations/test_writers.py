@@ -22,6 +22,8 @@ from tests.core.making_films import ffmpeg, ffprobe_frames
 from tests.core.making_videos import every_ms, make_video
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 VARIABLE = [0, 33, 66, 99, 196, 229, 262, 295, 392, 500, 533, 566, 640, 673, 706, 739, 836, 869, 902, 1000]
 DROPPED = [40 * i for i in range(40) if i % 7 != 3]
 

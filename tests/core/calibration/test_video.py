@@ -16,6 +16,8 @@ from core.errors import BadInput
 from core.geometry.lens import LensModel
 from tests.core.making_films import ffmpeg
 
+pytestmark = pytest.mark.slow
+
 SIZE = (400, 300)
 BOARD = parse_board("charuco:7x5:10:7:DICT_4X4_50")
 CHESSBOARD = parse_board("chessboard:6x5:10")

@@ -19,6 +19,8 @@ from core.json_files import write_json
 from tests.core.inspection_report.making_reports import DAY, ROW, changed, document_of, form_of, source_of, text_of
 from tests.core.making_results import RESULTS
 
+pytestmark = pytest.mark.slow
+
 HOSTILE = (
     '#panic("ran")',
     '#read("/etc/passwd")',

@@ -42,6 +42,8 @@ from tests.core.making_blades import PITCH_RAD, SCENE, blades, sparse_of, walk
 from tests.core.making_results import opened
 from tests.core.making_rows import defect, mapped, run_frames
 
+pytestmark = pytest.mark.slow
+
 F64 = NDArray[np.float64]
 
 TRUE = Hypothesis(Axis(np.array([0.0, 0.0, 1.0]), np.zeros(3)), PITCH_RAD)

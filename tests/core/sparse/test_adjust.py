@@ -15,6 +15,8 @@ from core.sparse.lens_trial import MIN_IMAGES, judge_principal_point, try_lens
 from core.sparse.mapper import mapper_options, open_cache
 from tests.core.sparse.scene import HEIGHT, WIDTH, Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = MapperSettings(search_tracks=150)
 OPTIONS = mapper_options(SETTINGS, threads=1, seed=0, tuned=False)
 

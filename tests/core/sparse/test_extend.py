@@ -22,6 +22,8 @@ from core.stages import extend as extend_stage
 from tests.core.making_products import facts_of
 from tests.core.sparse.scene import FOCAL, Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = MapperSettings(search_tracks=150)
 N_FRAMES = 20
 

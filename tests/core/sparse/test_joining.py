@@ -17,6 +17,8 @@ from core.sparse.mapper import restrict_model
 from core.viewgraph import PairTable
 from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
+pytestmark = pytest.mark.slow
+
 N, CUT = 40, 22
 SETTINGS = make_settings().mapper
 

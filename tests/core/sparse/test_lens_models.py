@@ -18,6 +18,8 @@ from core.verification import CALIBRATED, CameraFields
 from core.viewgraph import database_of
 from tests.core.sparse.scene import HEIGHT, WIDTH, center_errors, make_scene, model_of, view_graph, write_graph
 
+pytestmark = pytest.mark.slow
+
 FRAMES = 16
 TRUE: dict[str, list[float]] = {
     LensModel.OPENCV_FISHEYE: [330.0, 330.0, 322.0, 238.0, 0.03, -0.01, 0.0, 0.0],

@@ -23,6 +23,8 @@ from core.sparse.mapper import mapper_options, open_cache
 from core.sparse.trimming import set_lens
 from tests.core.sparse.scene import FOCAL, HEIGHT, WIDTH, make_scene, model_of, view_graph, write_graph
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = MapperSettings(search_tracks=0)
 NOISE_PX = 0.3
 

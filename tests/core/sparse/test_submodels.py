@@ -19,6 +19,8 @@ from core.viewgraph import PairTable
 from tests.core.making_products import facts_of
 from tests.core.sparse.scene import Scene, center_errors, make_scene, model_of, view_graph, write_graph
 
+pytestmark = pytest.mark.slow
+
 N, CUT = 36, 20
 
 

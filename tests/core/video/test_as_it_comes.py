@@ -21,6 +21,8 @@ from tests.core.making_films import SAMPLE, ffmpeg, ffmpeg_pixels, ffprobe_frame
 from tests.core.making_videos import cut_to, every_ms, make_video
 from tests.inputs import INPUTS
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 
 X264 = ("-c:v", "libx264", "-preset", "ultrafast")

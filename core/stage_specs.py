@@ -227,7 +227,7 @@ STAGES: dict[str, StageSpec] = {
         ),
         _spec("fuse", FuseProduct, "fusion", weight=19),
         _spec("mesh", MeshProduct, "mesh", weight=62),
-        _spec("row", RowProduct, "seed", version=3, weight=3),
+        _spec("row", RowProduct, "seed", version=4, weight=3),
         _spec(
             "blades",
             BladesProduct,

@@ -16,7 +16,7 @@ from core.row.files import read_blades, write_blades
 from core.row.fit import refined
 from core.row.model import NoRow, UnknownRow
 from core.row.overlap import Hypothesis
-from core.row.regular import MAX_OFF_PITCHES, differences
+from core.row.regular import MAX_OFF_PITCHES, Differences, differences
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.turn import Axis
 from core.surface.ply import Mesh
@@ -95,6 +95,21 @@ def test_a_right_model_is_a_row_without_a_flag(mesh: Mesh) -> None:
     found = told_apart(sample, fitted(sample))
     assert isinstance(found, Apart)
     assert np.abs(found.differences.steps).max() < 0.02
+
+
+def test_one_pair_alone_does_not_make_a_model_irregular() -> None:
+    """A blade that lies wrong does so beside all others; two half-seen ones may seem to beside each other alone."""
+    right, wrong = np.full(5, 0.001), np.full(5, 0.3)
+    of_pair = {(0, 1): right, (1, 2): right, (0, 2): wrong}
+    alone = Differences(np.arange(3), of_pair).worst
+    assert alone is not None
+    assert alone.off_pitches == pytest.approx(0.001)
+    twice = Differences(np.arange(3), {**of_pair, (1, 2): wrong}).worst
+    assert twice is not None
+    assert (twice.off_pitches, twice.blades[1]) == (pytest.approx(0.3), 3)
+    only = Differences(np.arange(2), {(0, 1): wrong}).worst
+    assert only is not None
+    assert only.off_pitches == pytest.approx(0.3)
 
 
 def test_the_worst_pair_tells_by_how_much(tmp_path: Path) -> None:

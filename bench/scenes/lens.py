@@ -1,6 +1,6 @@
 """The lens that a run finds, held against the true one: runs of scenes that end where the lens is chosen.
 
-A tenth of a whole run, so that a change of the search for the lens is seen on every scene with several seeds. Where the
+They take about half of a whole run's time, so that a change of the search is seen on more scenes and seeds. Where the
 same lens is chosen nothing after it differs.
 """
 

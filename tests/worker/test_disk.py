@@ -25,7 +25,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
         yield folder
 
 
-@pytest.mark.parametrize("leave", [1_100_000, 1_500_000])
+@pytest.mark.parametrize("leave", [1_200_000, 1_500_000])
 def test_a_disk_that_fills_up_is_one_clear_error_and_it_goes_on_later(
     place: Workplace, small_disk: Path, leave: int
 ) -> None:

@@ -13,7 +13,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
-from typing import TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
@@ -30,8 +29,6 @@ from store.integration_models import TransferState
 from store.outbound import Outbound
 from store.transfers import TransferView, WantedFile
 from store.uploads import Digests
-
-T = TypeVar("T")
 
 WAIT_S = 20.0
 """A request waits so long for its files before it is told to come back."""

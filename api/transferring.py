@@ -24,7 +24,7 @@ from core.fingerprint import digest_of_file
 from store.bucket_inputs import SCHEME, BucketInputs
 from store.downloads import Begun, Downloads, Source
 from store.json_log import logger
-from store.transfers import KnownFile, TransferLease, TransferLost
+from store.transfers import KnownFile, TransferLease, TransferLost, transfer_lost
 from store.uploads import Digests, UploadFile, UploadLocked, UploadView
 
 _COMMIT_BYTES = 64 << 20
@@ -158,7 +158,7 @@ class _UploadSink:
 
     def write(self, data: bytes) -> None:
         if self._held.lost.is_set():
-            raise TransferLost("another process fetches this file now", where="url")
+            raise transfer_lost()
         self._file.write(data)
         due = self._file.offset - self._committed >= _COMMIT_BYTES
         if due or time.monotonic() - self._committed_at >= _COMMIT_S:

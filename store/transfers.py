@@ -35,6 +35,11 @@ class TransferLost(BladeAtlasError):
     code = "transfer_lost"
 
 
+def transfer_lost() -> TransferLost:
+    """What ends the work of a process that lost its lease."""
+    return TransferLost("another process fetches this file now", where="url")
+
+
 @dataclass(frozen=True)
 class WantedFile:
     """A file to fetch."""
@@ -148,8 +153,7 @@ class Transfers:
         """Lease a transfer whose lease is over; None when there is none, or another process was faster."""
         with self.db.write() as session:
             now = self.db.now(session)
-            free = or_(Transfer.lease_expires_at.is_(None), Transfer.lease_expires_at <= now)
-            where = (Transfer.id == transfer_id, Transfer.state == TransferState.FETCHING, free)
+            where = (Transfer.id == transfer_id, Transfer.state == TransferState.FETCHING, _free(now))
             values = {"holder": holder, "fence": Transfer.fence + 1, "lease_expires_at": self._until(now)}
             if not changed(session, update(Transfer).where(*where).values(values)):
                 return None
@@ -177,7 +181,7 @@ class Transfers:
         """
         now = self.db.now(session)
         if not changed(session, update(Transfer).where(*_held(lease)).values(lease_expires_at=self._until(now))):
-            raise TransferLost("another process fetches this file now", where="url")
+            raise transfer_lost()
         file = session.get_one(TransferFile, (lease.id, number))
         before = None if file.upload_id is None else session.get(Upload, file.upload_id)
         file.upload_id, file.tag = upload_id, tag
@@ -195,7 +199,7 @@ class Transfers:
         """
         with self.db.write() as session:
             if session.scalar(select(Transfer.id).where(*_held(lease))) is None:
-                raise TransferLost("another process fetches this file now", where="url")
+                raise transfer_lost()
             session.get_one(TransferFile, (lease.id, number)).tag = tag
 
     def finish(self, lease: TransferLease) -> bool:
@@ -244,8 +248,12 @@ def _held(lease: TransferLease) -> tuple[ColumnElement[bool], ...]:
 
 
 def _forgotten(now: datetime) -> tuple[ColumnElement[bool], ...]:
-    free = or_(Transfer.lease_expires_at.is_(None), Transfer.lease_expires_at <= now)
-    return (Transfer.asked_at < now - timedelta(seconds=KEPT_S), free)
+    return (Transfer.asked_at < now - timedelta(seconds=KEPT_S), _free(now))
+
+
+def _free(now: datetime) -> ColumnElement[bool]:
+    """Nobody holds a lease any more."""
+    return or_(Transfer.lease_expires_at.is_(None), Transfer.lease_expires_at <= now)
 
 
 def _end(session: Session, which: tuple[ColumnElement[bool], ...], now: datetime) -> list[str]:

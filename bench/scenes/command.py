@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def command(arguments: argparse.Namespace) -> None:
     """Run what is missing and print the table; a line on standard error tells each scene's end."""
     # Imported here so that --help does not load the vision libraries.
-    from bench.scenes.make import is_made, make_scene
+    from bench.scenes.make import make_missing
     from bench.scenes.pooled import confidence_line, false_boxes_line, hard_half
     from bench.scenes.run import DEFAULT, THESIS, Bench, Column
     from bench.scenes.table import markdown
@@ -47,10 +47,7 @@ def command(arguments: argparse.Namespace) -> None:
     scenes = [scene for scene in family if scene.name in wanted]
     if arguments.make:
         for scene in scenes:
-            folder = arguments.out / "scenes" / scene.name
-            if not is_made(scene, folder):
-                folder.parent.mkdir(parents=True, exist_ok=True)
-                make_scene(scene, folder)
+            make_missing(scene, arguments.out / "scenes" / scene.name)
         return
     if arguments.fit:
         from bench.scenes.fit import collect, report

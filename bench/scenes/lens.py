@@ -17,7 +17,7 @@ import numpy as np
 from bench.accuracy.truth import Lens as TrueLens
 from bench.accuracy.truth import load_truth
 from bench.kept import Found, kept_or_new
-from bench.scenes.make import is_made, make_scene
+from bench.scenes.make import make_missing
 from bench.scenes.run import Column, program_digest
 from bench.scenes.spec import Scene
 from core.errors import StageFailed
@@ -60,9 +60,7 @@ def find_lens(out: Path, scene: Scene, column: Column, seed: int) -> Found:
     source = out / "scenes" / scene.name
 
     def make() -> Found:
-        if not is_made(scene, source):
-            source.parent.mkdir(parents=True, exist_ok=True)
-            make_scene(scene, source)
+        make_missing(scene, source)
         return {
             "scene": scene.name,
             "seed": seed,

@@ -70,6 +70,13 @@ def make_scene(scene: Scene, folder: Path, motion: Motion | None = None) -> None
     work.rename(folder)
 
 
+def make_missing(scene: Scene, folder: Path, motion: Motion | None = None) -> None:
+    """`make_scene` where the folder does not hold this very scene; the folders above are made too."""
+    if not is_made(scene, folder):
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        make_scene(scene, folder, motion)
+
+
 def is_made(scene: Scene, folder: Path) -> bool:
     """Whether the folder holds this very scene."""
     try:

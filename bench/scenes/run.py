@@ -16,7 +16,7 @@ from pathlib import Path
 
 from bench.accuracy.score import score_result
 from bench.kept import Found, kept_or_new, read_found, warnings_of
-from bench.scenes.make import is_made, make_scene
+from bench.scenes.make import make_missing
 from bench.scenes.spec import Scene
 from core.errors import StageFailed
 
@@ -55,9 +55,7 @@ class Bench:
         source = self.folder / "scenes" / scene.name
 
         def make() -> Found:
-            if not is_made(scene, source):
-                source.parent.mkdir(parents=True, exist_ok=True)
-                make_scene(scene, source)
+            make_missing(scene, source)
             return {"scene": scene.name, "column": column.name, **self._run(scene, column, source)}
 
         return kept_or_new(self._path(scene, column), key, make)

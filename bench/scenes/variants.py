@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from bench.accuracy.result import read_sparse
 from bench.accuracy.truth import Truth, load_truth
 from bench.kept import Found, kept_or_new
-from bench.scenes.make import TIME_BASE, is_made, make_scene, video_stream
+from bench.scenes.make import TIME_BASE, make_missing, video_stream
 from bench.scenes.path import make_path, resampled
 from bench.scenes.render import TONE
 from bench.scenes.run import DEFAULT, program_digest, run_and_score
@@ -125,9 +125,7 @@ def darkened(n_frames: int, count: int, light: float, seed: int = 0) -> tuple[li
 def make_slow(folder: Path) -> None:
     """Render the slow path as a scene of its own at 60 frames a second; a finished one is left as it is."""
     scene = replace(SLOW, n_frames=SLOW.n_frames * FAST_FPS // round(SLOW.fps), fps=float(FAST_FPS))
-    if not is_made(scene, folder):
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        make_scene(scene, folder, resampled(make_path(SLOW), scene.n_frames))
+    make_missing(scene, folder, resampled(make_path(SLOW), scene.n_frames))
 
 
 def rates(out: Path) -> list[Found]:

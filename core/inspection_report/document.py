@@ -24,6 +24,7 @@ from core.json_files import JsonObject
 from core.report.limits import limit_text, limits_document, limits_of
 from core.review.state import Review, Reviewed
 from core.scene.defect import MODEL_UNIT, DefectRecord
+from core.scene.on_row import blade_name
 from core.scene.size import MM_PER_INCH
 from core.settings.limits import Limit
 
@@ -245,10 +246,7 @@ def _coverage(model: int, source: ReportSource, findings: Sequence[JsonObject]) 
 def _blade_seen(
     one: Mapping[str, object], model: int, findings: Sequence[JsonObject], source: ReportSource
 ) -> JsonObject:
-    name = str(one["blade"])
-    if model:
-        row: JsonObject = source.rows.get(model) or {}
-        name = row.get("on_first", {}).get("names", {}).get(name, f"{model}-B{name}")
+    name = blade_name(str(one["blade"]), model, (source.rows.get(model) or {}).get("on_first"))
     return {
         "blade": name,
         "text": blade_text(name, relative=is_relative(name, source)),

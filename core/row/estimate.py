@@ -133,8 +133,9 @@ def told_apart(fine: SurfaceSample, row: Hypothesis) -> Apart | NoRow:
     found = differences(sheet, fine)
     if len(found.blades) < LEAST_BLADES:
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)
-    if found.worst is not None and found.worst.off_pitches > MAX_OFF_PITCHES:
-        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value, found.worst)
+    worst = found.worst
+    if worst is not None and worst.off_pitches > MAX_OFF_PITCHES:
+        return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value, worst)
     # After that: blades half a pitch off fill the troughs.
     if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)

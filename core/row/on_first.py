@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cached_property
 from math import hypot
 
 import numpy as np
@@ -71,17 +72,16 @@ class ModelOfRow:
     """What the row of a model is compared by."""
 
     row: BladeRow | NoRow
-    sample: SurfaceSample
-    """Of its surface; empty without a row."""
+    mesh: Mesh
+    """Its surface, faces counter-clockwise seen from the cameras."""
     views: Views
+    seed: int
+    """Of the points drawn."""
 
-
-def model_of_row(row: BladeRow | NoRow, mesh: Mesh, views: Views, seed: int) -> ModelOfRow:
-    """With points drawn on a surface whose faces are counter-clockwise seen from the cameras."""
-    drawn = SurfaceSample(np.zeros((0, 3)), np.zeros((0, 3)))
-    if isinstance(row, BladeRow):
-        drawn = thinned(sample_surface(mesh, seed), POINTS)
-    return ModelOfRow(row, drawn, views)
+    @cached_property
+    def sample(self) -> SurfaceSample:
+        """Points of the surface: drawn when they are asked for, as a result of one model never does."""
+        return thinned(sample_surface(self.mesh, self.seed), POINTS)
 
 
 def of_further(told: RowSettings) -> RowSettings:

@@ -38,7 +38,7 @@ from core.report.tables import write_csv
 from core.row.estimate import UNTOLD, estimate_row
 from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
-from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, model_of_row, of_further, put_on_first
+from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, of_further, put_on_first
 from core.row.places import blades_of_vertices
 from core.row.rescaled import MEASURED, ChangeOfScale, changed_scale, scale_of_model
 from core.row.tables import RowOfModel, events_on_row, row_document, scale_of_row
@@ -197,7 +197,7 @@ def _row_of(
         return _Found(NoRow(UnknownRow.NO_SURFACE), same, on_first=on_first.to_dict() if model else None)
     mesh, views = read_surface(folder / SPARSE, folder / SURFACE)
     row = estimate_row(mesh, views, SEED, of_further(told) if model else told)
-    shown = model_of_row(row, mesh, views, SEED)
+    shown = ModelOfRow(row, mesh, views, SEED)
     if first is not None:
         row, on_first = put_on_first(first, shown, model, moments_s, told, jumps)
     laid = on_first.to_dict() if model else None

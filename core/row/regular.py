@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from heapq import nlargest
 from itertools import combinations
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,10 +60,6 @@ class Irregularity:
         return f"blades {one} and {other} of the {self.seen} seen, counted about the axis"
 
 
-def _off_pitches(pair: Irregularity) -> float:
-    return pair.off_pitches
-
-
 @dataclass(frozen=True)
 class Differences:
     """By how much the blades of a row lie beside each other after the whole pitches between them."""
@@ -86,8 +83,9 @@ class Differences:
             found = Irregularity(float(np.sqrt((off**2).mean())), (one + 1, other + 1), len(self.blades))
             for blade in pair:
                 of_blade.setdefault(blade, []).append(found)
-        told = [nlargest(2, pairs, key=_off_pitches)[-1] for pairs in of_blade.values()]
-        return max(told, key=_off_pitches, default=None)
+        off_pitches = attrgetter("off_pitches")
+        told = [nlargest(2, pairs, key=off_pitches)[-1] for pairs in of_blade.values()]
+        return max(told, key=off_pitches, default=None)
 
     @property
     def steps(self) -> F64:

@@ -14,6 +14,7 @@ from core.row.model import BladeRow, NoRow
 from core.row.places import OnRow, normals_at, on_row
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow
 from core.scene.detection import DetectionRow
+from core.scene.on_row import blade_name
 from core.scene.size import LengthUnit, Scale, ScaleSource, scale_fields
 from core.scene.views import Views
 from core.settings.row import RowSettings
@@ -47,11 +48,8 @@ class RowOfModel:
         return MODEL_UNIT if self.scale is None else LengthUnit.MM
 
     def name(self, number: int | None) -> str | None:
-        """A blade as the tables name it: by the first model's numbers, or by its own with the model's before them."""
-        if number is None or not self.model:
-            return None if number is None else str(number)
-        names: Mapping[str, str] = (self.on_first or {}).get("names", {})
-        return names.get(str(number), f"{self.model}-B{number}")
+        """A blade as the tables name it (`blade_name`); None for what lies on none."""
+        return None if number is None else blade_name(number, self.model, self.on_first)
 
     def detections(self, rows: Sequence[DetectionRow], sigmas: Mapping[int, float | None]) -> list[DetectionRow]:
         """The rows, those with a place in this model with their blade and where on it they lie.

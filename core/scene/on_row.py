@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
@@ -54,6 +55,20 @@ class RowColumns:
         side = row.get("side")
         values = {name: row.get(name) for name in ROW_COLUMNS if name != "side"}
         return cls(side=None if side is None else Side(side), **values)
+
+
+def blade_name(number: int | str, model: int, on_first: JsonObject | None) -> str:
+    """A blade as the tables name it: by the first model's numbers, or by its own with the model's before them.
+
+    Args:
+        number: of the blade in its model.
+        model: number of the model.
+        on_first: of a further model, how it lies on the row of the first (the member of ``row.json``).
+    """
+    if not model:
+        return str(number)
+    names: Mapping[str, str] = (on_first or {}).get("names", {})
+    return names.get(str(number), f"{model}-B{number}")
 
 
 NOT_ON_A_ROW = RowColumns()

@@ -13,7 +13,7 @@ from core.products.surface import BladesProduct
 from core.row.estimate import describe_row
 from core.row.files import read_blades, read_found, write_blades, write_on_first
 from core.row.model import BladeRow, NoRow, UnknownRow
-from core.row.on_first import model_of_row, of_further, put_on_first
+from core.row.on_first import ModelOfRow, of_further, put_on_first
 from core.scene.views import Views
 from core.stage import StageTask
 from core.surface.ply import Mesh
@@ -45,8 +45,8 @@ def _put_on_first(task: StageTask, row: BladeRow | NoRow, surface: tuple[Mesh, V
     if "blades" in task.inputs:
         first = read_blades(task.inputs["blades"])
     models = [
-        model_of_row(first, *_surface(task.inputs["extend"], task.inputs["mesh"]), seed),
-        model_of_row(row, *surface, seed),
+        ModelOfRow(first, *_surface(task.inputs["extend"], task.inputs["mesh"]), seed),
+        ModelOfRow(row, *surface, seed),
     ]
     moments_s = read_frames(task.input("frames")).moment_of_index
     jumps = task.products.of(BridgeProduct, "bridge").jumps if "bridge" in task.products else ()

@@ -29,6 +29,7 @@ from store.publishing import Publishing
 from store.records import InputFiles
 from store.settings import DeploymentSettings
 from store.tables import replace_rows
+from tests.api.file_server import Files, files_served
 from tests.databases import put_new_tables
 from tests.store.small_plan import GRAPH, result_for
 from tests.waiting import wait_for
@@ -124,6 +125,14 @@ class Backend:
         self.work(inspection_id)
         self.publish(inspection_id, files, **rows)
         return inspection_id
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
+    """A local https server of files, whose authority is trusted."""
+    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "ca.pem"))
+    with files_served(tmp_path / "ca.pem") as served:
+        yield served
 
 
 @pytest.fixture

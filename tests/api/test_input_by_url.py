@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import timedelta
 from ipaddress import ip_network
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -23,16 +22,9 @@ from store.leasing import input_files
 from store.models import Inspection, Upload
 from store.outbound import Outbound
 from tests.api.conftest import Backend
-from tests.api.file_server import DATA, HERE, Files, files_served
+from tests.api.file_server import DATA, HERE, Files
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture
-def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
-    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "ca.pem"))
-    with files_served(tmp_path / "ca.pem") as served:
-        yield served
 
 
 @dataclass

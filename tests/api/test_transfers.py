@@ -29,7 +29,7 @@ from store.models import Inspection, Upload
 from store.transfers import WantedFile
 from store.uploads import UploadFile
 from tests.api.conftest import ROOT, Backend, wait_until
-from tests.api.file_server import DATA, HERE, Files, files_served
+from tests.api.file_server import DATA, HERE, Files
 from tests.api.test_input_by_url import Place, kept, make_place, refused, uploads_left
 from tests.databases import BOTH, database
 
@@ -42,13 +42,6 @@ ONE_EACH = {"max_open_uploads_per_owner": 1, "max_fetches_per_owner": 1}
 
 SHORT = {"lease_s": 0.4, "heartbeat_s": 0.1}
 """A lease is over soon after its holder died."""
-
-
-@pytest.fixture
-def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Files]:
-    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "ca.pem"))
-    with files_served(tmp_path / "ca.pem") as served:
-        yield served
 
 
 @dataclass

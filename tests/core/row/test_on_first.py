@@ -24,7 +24,7 @@ from core.row import estimate, on_first
 from core.row.estimate import describe_row
 from core.row.files import read_blades, read_on_first, write_found
 from core.row.model import BladeRow, EdgeName, NoRow, UnknownRow
-from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, model_of_row, of_further, put_on_first
+from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, of_further, put_on_first
 from core.row.overlap import Hypothesis
 from core.row.passing import NoOffset, Offset, OffsetFrom, offset_between
 from core.row.turn import Axis
@@ -75,7 +75,7 @@ def part(of: tuple[int, ...], frames: range, told: RowSettings | None = None, pi
     assert isinstance(row, BladeRow)
     if pitch != 1.0:
         row = replace(row, sheet=replace(row.sheet, pitch_rad=pitch * PITCH_RAD))
-    return model_of_row(row, mesh, views, 0)
+    return ModelOfRow(row, mesh, views, 0)
 
 
 def seen(frames: range) -> Views:
@@ -88,7 +88,7 @@ def elsewhere(of: tuple[int, ...], frames: range, turned: bool = False) -> Model
     mesh, views, found = moved(surface(of), seen(frames), turned)
     row = describe_row(mesh, views, 1, found, RowSettings())
     assert isinstance(row, BladeRow)
-    return model_of_row(row, mesh, views, 1)
+    return ModelOfRow(row, mesh, views, 1)
 
 
 def moved(mesh: Mesh, views: Views, turned: bool = False) -> tuple[Mesh, Views, Hypothesis]:
@@ -173,9 +173,9 @@ def test_rows_that_are_not_one_stay_apart(first: ModelOfRow, second: ModelOfRow)
     assert put(first, none).reason == NotOnFirst.NO_ROW
     assert put(none, second).reason == NotOnFirst.NO_ROW
     assert put(part(EARLY, range(12), pitch=1.15), second).reason == NotOnFirst.PITCH_DIFFERS
-    flat = second.sample.points - ELSEWHERE.shift
-    squeezed = replace(second.sample, points=flat * (0.4, 1.0, 1.0) + ELSEWHERE.shift)
-    assert put(first, replace(second, sample=squeezed)).reason in (NotOnFirst.SHAPE_DIFFERS, NotOnFirst.AXIS_DIFFERS)
+    flat = second.mesh.vertices - ELSEWHERE.shift
+    squeezed = replace(second.mesh, vertices=flat * (0.4, 1.0, 1.0) + ELSEWHERE.shift)
+    assert put(first, replace(second, mesh=squeezed)).reason in (NotOnFirst.SHAPE_DIFFERS, NotOnFirst.AXIS_DIFFERS)
 
 
 def turns(rate: F64, hidden: int = 0) -> tuple[dict[int, float], dict[int, float]]:

@@ -40,7 +40,7 @@ FLAG_ADVICE: Mapping[str, str] = {
         "Check some places in the overlay; set camera.model=SIMPLE_RADIAL if the lens is a perspective one."
     ),
     "weak_join": "Do not measure across the join, nor count blades over it; a slower pass there would mend it.",
-    "row_irregular": "Take no place or size across the blades named; find a part of the video that holds together.",
+    "row_irregular": "Take no place or size across what is named; find a part of the video that holds together.",
     "not_static": f"{_TRUST_NO_PLACE} while neither rotor nor probe tip bends or swings.",
     "two_motions": (
         "Check with the overlay which part the model follows; cut the other one off with the region of interest."

@@ -56,7 +56,7 @@ FLAG_CODES: Mapping[str, str] = {
     "parts_after_veto": "every whole model was wrong; the result is a part of one, between the places that did not fit",
     "perspective_after_veto": "every model of a fisheye lens was wrong; the result is that of a perspective lens",
     "weak_join": "the model hangs together by few moving points at one place; its parts may not fit each other",
-    "row_irregular": "the blades are not equally far apart: the model is bent or joined wrongly; no row is told",
+    "row_irregular": "blades or cameras do not go round evenly: the model is bent or joined wrongly; no row is told",
     "not_static": "typical pairs of images do not fit the model: the scene bends, or the model is wrong",
     "two_motions": "many pairs of images show a motion that is not the model's: something moves on its own",
     "planar_start": "a plane or a turn explains nearly all pairs of images: shape and lens have little hold",

@@ -212,7 +212,10 @@ def _dense_and_mapping(settings: Settings, done: Products, graph: str) -> list[T
     tasks += [*depth, *geometric, fuse, TaskSpec("mesh", ("fuse",))]
     # Optional: a row that cannot be told is an outcome, and places are worth having without.
     shape = ("extend", "mesh")
-    tasks += [TaskSpec("row", shape, optional=True), TaskSpec("blades", (*shape, "row"), optional=True)]
+    # Where the pictures jump the turn of the camera may leap.
+    bridge = ("bridge",) if settings.matching.bridge else ()
+    tasks.append(TaskSpec("row", shape, optional=True))
+    tasks.append(TaskSpec("blades", ("frames", *bridge, *shape, "row"), optional=True))
     dense_keys = ("undistort", *(task.key for task in geometric), "fuse", "mesh")
     tasks.append(TaskSpec("map_defects", ("probe", "annotations", "frames", graph, "extend", *dense_keys)))
     tasks.append(TaskSpec("timeline", ("annotations", "frames", "extend", "fuse", "mesh", "blades", "map_defects")))
@@ -222,7 +225,7 @@ def _dense_and_mapping(settings: Settings, done: Products, graph: str) -> list[T
     n_submodels = done.of(SubmodelsProduct, "pieces").n_pieces if settings.model.further else 0
     timelines = [key_of("timeline", submodel) for submodel in range(n_submodels + 1)]
     for submodel in range(1, n_submodels + 1):
-        tasks += _of_submodel(submodel, timelines[:submodel], graph, ("bridge",) if settings.matching.bridge else ())
+        tasks += _of_submodel(submodel, timelines[:submodel], graph, bridge)
     tasks.append(TaskSpec("gallery", ("probe", "annotations", "frames", "map_defects", *timelines)))
     return tasks
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,8 +25,9 @@ from bench.scenes.detector import Visible
 from bench.scenes.make import Seen, frame_times, write_truth
 from bench.scenes.path import make_path
 from bench.scenes.render import Painter, true_lens
+from core.flags import Flag, Severity, verdict_by
 from core.geometry.pose import transform
-from core.outputs import DEFECT_SURFACE, DEFECTS, DETECTIONS, FRAMES, SPARSE, SUMMARY, SURFACE
+from core.outputs import DEFECT_SURFACE, DEFECTS, DETECTIONS, FRAMES, QUALITY, SPARSE, SUMMARY, SURFACE
 from core.report.tables import write_csv
 from core.scene.defect import MODEL_UNIT, DefectRecord, Extent, Persistence
 from core.scene.detection import DETECTION_COLUMNS, Detection, DetectionRow, mapped_row
@@ -91,6 +93,7 @@ def make_true_result(case: Case, truth_folder: Path, folder: Path) -> None:
             for one in findings
         ]
     _write(folder, mesh, poses, list(taken), times, lens, findings)
+    _write_quality(folder, [] if scene.jump_at is None else [sum(kept[k] < scene.jump_at for k in taken)])
 
 
 def _shown(middles: F64, normals: F64, point: F64, pose: F64, lens: Lens) -> Flags:
@@ -154,6 +157,13 @@ def _write(
     write_csv((folder / DETECTIONS).with_suffix(".csv"), DETECTION_COLUMNS, tables)
     (folder / DEFECTS).write_text(json.dumps([one.to_dict() for one in _records(rows, findings)]), encoding="utf-8")
     (folder / SUMMARY).write_text("{}", encoding="utf-8")
+
+
+def _write_quality(folder: Path, after: Sequence[int]) -> None:
+    """The verdict of a run that saw the pictures jump before these frames of its own."""
+    jumps = [Flag("picture_jumps", Severity.WARNING, where=f"between frames {k - 1} and {k}") for k in after]
+    document = {"verdict": verdict_by(jumps), "flags": [flag.explained() for flag in jumps]}
+    (folder / QUALITY).write_text(json.dumps(document), encoding="utf-8")
 
 
 def _sparse(poses: F64, lens: Lens) -> pycolmap.Reconstruction:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from core.row.coverage import coverage_of, in_order, sightings
 from core.row.fit import best_contrast, refined
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast, overlap, sides
+from core.row.passing import leap_within, turn_of_camera
 from core.row.regular import MAX_OFF_PITCHES, Differences, differences
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.section import section_of
@@ -105,6 +107,22 @@ def describe_row(
     if isinstance(apart, NoRow):
         return apart
     return _described(fine, even, apart, views, Surface(mesh.vertices, mesh.faces), told)
+
+
+def without_leap(
+    row: BladeRow, views: Views, moments_s: Mapping[int, float], jumps: Sequence[tuple[int, int]] = ()
+) -> BladeRow | NoRow:
+    """The row, or that it is none: a part of the model was joined whole pitches off, which its surface cannot show.
+
+    Args:
+        row: of the model.
+        views: the model's, in order of time.
+        moments_s: of the frames, s.
+        jumps: neighbouring frames between which the pictures jump: there the turn may leap.
+    """
+    turn = turn_of_camera(row.axis, row.pitch_rad, views.centers)
+    leap = leap_within(dict(zip(views.frame_index.tolist(), turn.tolist(), strict=True)), moments_s, jumps)
+    return row if leap is None else NoRow(UnknownRow.TURN_LEAPS, row.contrast, leap=leap)
 
 
 def find_row(coarse: SurfaceSample, fine: SurfaceSample, rotations: F64, translations: F64) -> Hypothesis | None:

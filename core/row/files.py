@@ -12,6 +12,7 @@ from core.row.blades import Sheet
 from core.row.model import BladeRow, Coverage, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.on_first import OnFirst
 from core.row.overlap import Hypothesis
+from core.row.passing import Leap
 from core.row.regular import Irregularity
 from core.row.section import Edge, Section
 from core.row.turn import Axis
@@ -59,13 +60,16 @@ def read_on_first(folder: Path) -> JsonObject | None:
 
 def _unknown(row: NoRow) -> JsonObject:
     irregular = None if row.irregular is None else asdict(row.irregular)
-    return {"reason": str(row.reason), "contrast": row.contrast, "irregular": irregular}
+    leap = None if row.leap is None else asdict(row.leap)
+    return {"reason": str(row.reason), "contrast": row.contrast, "irregular": irregular, "leap": leap}
 
 
 def _no_row(values: JsonObject) -> NoRow:
     pair = values["irregular"]
     irregular = None if pair is None else Irregularity(**{**pair, "blades": tuple(pair["blades"])})
-    return NoRow(UnknownRow(values["reason"]), values["contrast"], irregular)
+    two = values["leap"]
+    leap = None if two is None else Leap(**{**two, "frames": tuple(two["frames"])})
+    return NoRow(UnknownRow(values["reason"]), values["contrast"], irregular, leap)
 
 
 def _axis(axis: Axis) -> JsonObject:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from core.flags import Flag, Severity
 from core.json_files import JsonObject
 from core.row.blades import Sheet
+from core.row.passing import LEAST_LEAP, Leap
 from core.row.regular import MAX_OFF_PITCHES, Irregularity
 from core.row.section import Section
 from core.row.turn import Axis
@@ -39,6 +40,7 @@ class UnknownRow(StrEnum):
     NO_REPETITION = "no_repetition"
     TOO_FEW_BLADES = "too_few_blades"
     PITCH_NOT_CONSTANT = "pitch_not_constant"
+    TURN_LEAPS = "turn_leaps"
     NOT_COMPUTED = "not_computed"
 
 
@@ -49,6 +51,7 @@ UNKNOWN_ROW: Mapping[UnknownRow, str] = {
     UnknownRow.TOO_FEW_BLADES: "the surface shows fewer than three equal blades",
     UnknownRow.NOT_COMPUTED: "the search for the row did not come to its end",
     UnknownRow.PITCH_NOT_CONSTANT: "the angle from blade to blade is not constant: a bent or wrongly joined model",
+    UnknownRow.TURN_LEAPS: "the camera leaps by whole blades though the pictures go on: a wrongly joined model",
 }
 """What each reason means, for people."""
 
@@ -200,14 +203,19 @@ class NoRow:
     """The best that was found, where it was asked for."""
     irregular: Irregularity | None = None
     """The two blades that speak against a row, where its pitch is not constant."""
+    leap: Leap | None = None
+    """The two frames that speak against it, where the turn of the camera leaps."""
 
     @property
     def flags(self) -> list[Flag]:
         """What a reader of the result must know: a surface that ought to be a row, and is none."""
-        if self.irregular is None:
-            return []
-        off, where = self.irregular.off_pitches, self.irregular.where
-        return [Flag("row_irregular", Severity.WARNING, off, MAX_OFF_PITCHES, where)]
+        if self.irregular is not None:
+            off, where = self.irregular.off_pitches, self.irregular.where
+            return [Flag("row_irregular", Severity.WARNING, off, MAX_OFF_PITCHES, where)]
+        if self.leap is not None:
+            leapt = abs(self.leap.pitches)
+            return [Flag("row_irregular", Severity.WARNING, leapt, LEAST_LEAP, self.leap.where)]
+        return []
 
     def to_dict(self) -> JsonObject:
         """JSON form."""
@@ -219,6 +227,7 @@ class NoRow:
             "evidence": {
                 "contrast": None if self.contrast is None else round(self.contrast, 4),
                 **({} if self.irregular is None else {"off_pitches": round(self.irregular.off_pitches, 4)}),
+                **({} if self.leap is None else {"leap_pitches": self.leap.pitches, "frames": list(self.leap.frames)}),
             },
         }
 

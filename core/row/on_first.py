@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 
 from core.json_files import JsonObject
 from core.row.model import BladeRow, NoRow
-from core.row.passing import NoOffset, Offset, OffsetFrom, offset_between
+from core.row.passing import NoOffset, Offset, OffsetFrom, offset_between, turn_of_camera
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.shared import Laid, OneBlade, laid_onto, off_axis, one_blade
-from core.row.turn import Axis
 from core.scene.views import Views
 from core.settings.row import RowSettings, SameBlade, same_blades
 from core.surface.ply import Mesh
@@ -194,17 +193,13 @@ def _one_row(here: OneBlade, there: OneBlade) -> Laid | NotOnFirst:
 
 def _turn(model: ModelOfRow, row: BladeRow, at: F64, way: int) -> dict[int, float]:
     """Pitches from blade 0, which is at a (3,) place, to the camera, by frame."""
-    angle = _unwrapped(row.axis, model.views.centers)
+    centers = model.views.centers
+    angle, _, _ = row.axis.cylinder(centers[:1])
     start, _, _ = row.axis.cylinder(at[None])
     # The row that is seen lies within half a turn of its blade 0.
     first = float(np.angle(np.exp(1j * (angle[0] - start[0])))) if len(angle) else 0.0
-    turn = way * (angle - angle[:1] + first) / row.pitch_rad
+    turn = way * (turn_of_camera(row.axis, row.pitch_rad, centers) + first / row.pitch_rad)
     return dict(zip(model.views.frame_index.tolist(), turn.tolist(), strict=True))
-
-
-def _unwrapped(axis: Axis, centers: F64) -> F64:
-    angle, _, _ = axis.cylinder(centers)
-    return np.asarray(np.unwrap(angle), np.float64)
 
 
 def _told_offset(first: BladeRow, second: BladeRow, way: int, told: SameBlade) -> Offset | NoOffset:

@@ -3,6 +3,9 @@
 Both models know the turn of the camera about the axis in pitches, but from a blade of their own. What lies between is
 a whole number. A frame that both have tells it; else the turn before the gap and after it are carried on into it, and
 what such a prediction is worth is found where the turn is known, inside the models.
+
+Within one model nothing may lie between: a part that was joined whole pitches off makes a perfect row of blades, and
+only the turn of the camera, which leaps there, tells of it.
 """
 
 from __future__ import annotations
@@ -14,6 +17,8 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+
+from core.row.turn import Axis
 
 F64 = NDArray[np.float64]
 
@@ -33,6 +38,10 @@ LEAST_TRIALS = 5
 """Predictions that were tried inside the models."""
 WINDOW_GAPS = 1.5
 """A rate is that of so many times the gap, and of at least `LEAST_FRAMES` frames."""
+LEAST_LEAP = 0.5
+"""Pitches that the step between two frames differs from the steps about it, where a leap is looked for."""
+STEPS_ABOUT = 4
+"""Steps on each side that tell what a step should be."""
 
 
 class OffsetFrom(StrEnum):
@@ -75,6 +84,21 @@ class Offset:
 
 
 @dataclass(frozen=True)
+class Leap:
+    """Two neighbouring frames of one model between which its camera turns by whole pitches more than it should."""
+
+    frames: tuple[int, int]
+    pitches: int
+    """By which the second lies ahead of where the first and its motion say; never 0."""
+
+    @property
+    def where(self) -> str:
+        """For people."""
+        one, other = self.frames
+        return f"between frames {one} and {other}, where the camera's turn leaps by {abs(self.pitches)} of the pitches"
+
+
+@dataclass(frozen=True)
 class Turn:
     """The turn of the camera of one model about the axis, in order of time."""
 
@@ -103,6 +127,13 @@ class Turn:
         if len(own) < LEAST_FRAMES or np.ptp(own) <= 0 or np.ptp(own) > 3.0 * window_s + FEW_S:
             return None
         return float(np.polyfit(own - own[0], turn, 1)[0])
+
+
+def turn_of_camera(axis: Axis, pitch_rad: float, centers: F64) -> F64:
+    """(n,) turn of the camera about the axis at its (n, 3) places in order of time, pitches from the first."""
+    angle, _, _ = axis.cylinder(centers)
+    turn: F64 = np.unwrap(angle) / pitch_rad
+    return turn - turn[:1]
 
 
 def offset_between(
@@ -138,6 +169,39 @@ def offset_between(
     if len({one.pitches for one in known}) > 1:
         return NoOffset.DISAGREES
     return min(known, key=lambda one: one.sigma)
+
+
+def leap_within(
+    by_frame: Mapping[int, float], moments_s: Mapping[int, float], jumps: Sequence[tuple[int, int]] = ()
+) -> Leap | None:
+    """Where the turn of one model leaps by whole pitches though the pictures go on; None where it nowhere does.
+
+    Args:
+        by_frame: turn of the camera in each of the model's frames, pitches.
+        moments_s: of the frames, s.
+        jumps: neighbouring frames between which the pictures jump: a leap there is not the model's.
+    """
+    frames = sorted(by_frame.keys() & moments_s.keys(), key=lambda frame: moments_s[frame])
+    whole = Turn.of(by_frame, moments_s)
+    cuts = [int(cut) + 1 for cut in np.flatnonzero(np.abs(_unlike(whole)) > LEAST_LEAP)]
+    bounds = [0, *cuts, len(frames)]
+    parts = [Turn(whole.moments_s[a:b], whole.pitches[a:b]) for a, b in pairwise(bounds)]
+    jumped = [(moments_s[a], moments_s[b]) for a, b in jumps if a in moments_s and b in moments_s]
+    for cut, turns in zip(cuts, pairwise(parts), strict=True):
+        told = _over(turns, 0, len(turns[0].moments_s) - 1, 0, jumped)
+        if isinstance(told, Offset) and told.pitches:
+            return Leap((frames[cut - 1], frames[cut]), -told.pitches)
+    return None
+
+
+def _unlike(turn: Turn) -> F64:
+    """(n - 1,) pitches by which each step differs from what the rates of the steps about it say."""
+    steps, lasts = np.diff(turn.pitches), np.maximum(np.diff(turn.moments_s), 1e-9)
+    rates = steps / lasts
+    about = [np.r_[rates[max(0, k - STEPS_ABOUT) : k], rates[k + 1 : k + 1 + STEPS_ABOUT]] for k in range(len(rates))]
+    usual = np.array([np.median(part) if len(part) else 0.0 for part in about])
+    unlike: F64 = steps - lasts * usual
+    return unlike
 
 
 def _gaps(first: Turn, second: Turn) -> Iterator[tuple[int, int, int]]:

@@ -35,7 +35,7 @@ from core.outputs import (
 from core.report.csv_form import read_csv
 from core.report.limits import limits_document, limits_of
 from core.report.tables import write_csv
-from core.row.estimate import UNTOLD, estimate_row
+from core.row.estimate import UNTOLD, estimate_row, without_leap
 from core.row.map import row_map
 from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.on_first import ModelOfRow, NotOnFirst, OnFirst, of_further, put_on_first
@@ -197,6 +197,8 @@ def _row_of(
         return _Found(NoRow(UnknownRow.NO_SURFACE), same, on_first=on_first.to_dict() if model else None)
     mesh, views = read_surface(folder / SPARSE, folder / SURFACE)
     row = estimate_row(mesh, views, SEED, of_further(told) if model else told)
+    if isinstance(row, BladeRow):
+        row = without_leap(row, views, moments_s, jumps)
     shown = ModelOfRow(row, mesh, views, SEED)
     if first is not None:
         row, on_first = put_on_first(first, shown, model, moments_s, told, jumps)

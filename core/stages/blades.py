@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from core.io.frames import read_frames
@@ -10,7 +11,7 @@ from core.io.surface import supported_mesh
 from core.mapping.load import read_surface
 from core.products.front import BridgeProduct
 from core.products.surface import BladesProduct
-from core.row.estimate import describe_row
+from core.row.estimate import describe_row, without_leap
 from core.row.files import read_blades, read_found, write_blades, write_on_first
 from core.row.model import BladeRow, NoRow, UnknownRow
 from core.row.on_first import ModelOfRow, of_further, put_on_first
@@ -29,6 +30,8 @@ def run(task: StageTask) -> BladesProduct:
     task.report(1, 4, "telling the blades apart")
     own_told = of_further(told) if task.submodel else told
     row = found if isinstance(found, NoRow) else describe_row(*surface, seed, found, own_told)
+    if isinstance(row, BladeRow):
+        row = without_leap(row, surface[1], *_moments_and_jumps(task))
     if task.submodel:
         task.report(3, 4, "putting them onto the row of the first model")
         row = _put_on_first(task, row, surface)
@@ -48,11 +51,16 @@ def _put_on_first(task: StageTask, row: BladeRow | NoRow, surface: tuple[Mesh, V
         ModelOfRow(first, *_surface(task.inputs["extend"], task.inputs["mesh"]), seed),
         ModelOfRow(row, *surface, seed),
     ]
-    moments_s = read_frames(task.input("frames")).moment_of_index
-    jumps = task.products.of(BridgeProduct, "bridge").jumps if "bridge" in task.products else ()
+    moments_s, jumps = _moments_and_jumps(task)
     row, on_first = put_on_first(models[0], models[1], task.submodel, moments_s, task.settings.row, jumps)
     write_on_first(task.out, on_first)
     return row
+
+
+def _moments_and_jumps(task: StageTask) -> tuple[Mapping[int, float], Sequence[tuple[int, int]]]:
+    """Moment of each frame, s, and the neighbouring frames between which the pictures jump."""
+    jumps = task.products.of(BridgeProduct, "bridge").jumps if "bridge" in task.products else ()
+    return read_frames(task.input("frames")).moment_of_index, jumps
 
 
 def _surface(extend: Path, mesh: Path) -> tuple[Mesh, Views]:

@@ -46,6 +46,8 @@ def _record(found: VideoCalibration) -> dict[str, object]:
         "frames_with_board": found.with_board,
         "frames_used": list(found.frames),
         "frames_left_out": list(found.left_out),
+        "corners": solution.n_corners,
+        "corners_left_out": solution.corners_left_out,
         "rms_px": solution.rms_px,
         "covered": solution.covered,
         "reach": solution.reach,
@@ -61,9 +63,10 @@ def _lines(found: VideoCalibration) -> list[str]:
     left_out = f", {len(found.left_out)} left out that fit badly" if found.left_out else ""
     fov = " x ".join("unknown" if angle is None else f"{angle:.1f}" for angle in solution.fov_deg)
     cells = f"{GRID[0]}x{GRID[1]} cells"
+    corners_left_out = f", {solution.corners_left_out} left out that fit badly" if solution.corners_left_out else ""
     return [
         f"views used: {len(found.frames)} ({seen}{left_out})",
-        f"error: {solution.rms_px:.3f} px (root mean square)",
+        f"error: {solution.rms_px:.3f} px (root mean square of {solution.n_corners} corners{corners_left_out})",
         f"focal length: {lens.fx:.2f}, {lens.fy:.2f} px; principal point: {lens.cx:.2f}, {lens.cy:.2f} px",
         f"field of view: {fov} degrees",
         f"corners: in {solution.covered:.0%} of {cells}, out to {solution.reach:.0%} of the half diagonal",

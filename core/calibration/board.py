@@ -14,10 +14,13 @@ from numpy.typing import NDArray
 from core.errors import BadInput
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 U8 = NDArray[np.uint8]
 
 MIN_CORNERS = 8
 """Corners of a ChArUco board that a view needs; fewer do not hold its pose."""
+MIN_LINES = 3
+"""Rows, and columns, that these have to be of."""
 MIN_MARKERS = 4
 """Markers from which on they are taken for a board's."""
 DICTIONARIES = tuple(
@@ -57,6 +60,12 @@ class Board:
         inner = (self.columns, self.rows) if self.kind == BoardKind.CHESSBOARD else (self.columns - 1, self.rows - 1)
         x, y = np.meshgrid(np.arange(1.0, inner[0] + 1), np.arange(1.0, inner[1] + 1))
         return self.square * np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)
+
+    def held_by(self, ids: I64) -> bool:
+        """Whether the corners (n,) of a view, rows of `points`, hold its pose: those of two rows or columns do not."""
+        inner = self.columns if self.kind == BoardKind.CHESSBOARD else self.columns - 1
+        spread = min(len(np.unique(ids // inner)), len(np.unique(ids % inner)))
+        return len(ids) >= MIN_CORNERS and spread >= MIN_LINES
 
     def charuco(self) -> cv2.aruco.CharucoBoard:
         """OpenCV's object of a ChArUco board."""
@@ -125,15 +134,8 @@ class CornerFinder:
         if self._detector is None:
             return self._chessboard(gray)
         xy, ids, _, _ = self._detector.detectBoard(gray)
-        if ids is None or len(ids) < MIN_CORNERS:
-            return None
-        order = np.asarray(ids, np.int64).ravel()
-        corners = np.asarray(xy, np.float64).reshape(-1, 2)
-        # Corners of one row or column hold no pose.
-        inner = self._board.columns - 1
-        if min(len(np.unique(order // inner)), len(np.unique(order % inner))) < 3:
-            return None
-        return Corners(order, corners)
+        order = np.asarray([] if ids is None else ids, np.int64).ravel()
+        return Corners(order, np.asarray(xy, np.float64).reshape(-1, 2)) if self._board.held_by(order) else None
 
     def _chessboard(self, gray: U8) -> Corners | None:
         size = (self._board.columns, self._board.rows)

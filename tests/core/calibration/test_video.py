@@ -140,6 +140,32 @@ def test_views_that_fit_badly_are_left_out() -> None:
     assert solution.rms_px == pytest.approx(0.05 * np.sqrt(2), rel=0.1)
 
 
+def test_corners_that_fit_badly_are_left_out_of_good_views() -> None:
+    views = seen_by(LENS, 12, 1.0)
+    shifted = views[2].xy.copy()
+    shifted[[3, 11]] += [0.9, -0.6]
+    views[2] = Corners(views[2].ids, shifted)
+    solution = solve(CHESSBOARD, views, SIZE, LensModel.OPENCV_FISHEYE)
+    all_corners = sum(len(view.ids) for view in views)
+    assert solution.left_out == ()
+    assert 2 <= solution.corners_left_out <= 6, "they draw the pose, and with it their neighbours"
+    assert solution.n_corners == all_corners - solution.corners_left_out
+    assert solution.rms_px == pytest.approx(0.05 * np.sqrt(2), rel=0.1)
+
+
+def test_a_view_keeps_a_corner_without_which_it_holds_no_pose() -> None:
+    views = seen_by(LENS, 12, 1.0)
+    eight = np.array([0, 1, 2, 6, 7, 8, 12, 13])
+    assert CHESSBOARD.held_by(eight)
+    assert not CHESSBOARD.held_by(eight[1:]), "too few"
+    assert not CHESSBOARD.held_by(np.arange(12)), "two rows"
+    xy = views[2].xy[eight]
+    xy[4] += [0.6, 0.0]
+    views[2] = Corners(eight, xy)
+    solution = solve(CHESSBOARD, views, SIZE, LensModel.OPENCV_FISHEYE)
+    assert (solution.left_out, solution.corners_left_out) == ((), 0)
+
+
 def test_views_in_the_middle_only_raise_a_warning() -> None:
     wide, narrow = (
         solve(CHESSBOARD, seen_by(LENS, 12, spread), SIZE, LensModel.OPENCV_FISHEYE) for spread in (1.0, 0.1)

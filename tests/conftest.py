@@ -5,6 +5,7 @@ With ``BLADEATLAS_REQUIRE_SERVICES=1`` an absent one fails the test instead.
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
 import socket
@@ -53,6 +54,18 @@ def _answers(url: str) -> bool:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.stash[_SKIPPED] = Counter()
+
+
+@pytest.fixture(autouse=True)
+def own_logging() -> Iterator[None]:
+    """A command that sets logging up does so for its test alone: its handler writes to that test's captured stderr."""
+    root = logging.getLogger()
+    before, level = list(root.handlers), root.level
+    yield
+    for handler in root.handlers[:]:
+        if handler not in before:
+            root.removeHandler(handler)
+    root.setLevel(level)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

@@ -128,10 +128,10 @@ def _score(
     numbers, blades = _votes(model, document, sim3, row, truth, own)
     numbering = _numbering(document, direction, numbers, blades)
     if numbering is None:  # no place has a blade, so which number is which does not matter
-        return {**score, "detections": _detections(own, document, Numbering(1, 0), row, truth)}, None
+        return {**score, "detections": _detections(own, document, Numbering(1, 0), row, truth, sim3.scale)}, None
     agrees = [number == numbering.number(blade) for number, blade in zip(numbers, blades, strict=True)]
     score["surface_blade_right"] = float(np.mean(agrees)) if model.blade_of_vertex is not None else None
-    score["detections"] = _detections(own, document, numbering, row, truth)
+    score["detections"] = _detections(own, document, numbering, row, truth, sim3.scale)
     score["coverage"] = _coverage(document, numbering, shown)
     return score, numbering
 
@@ -198,20 +198,31 @@ def _number(line: Found, document: Found) -> int | None:
 
 
 def _detections(
-    own: Sequence[tuple[Found, Placement]], document: Found, numbering: Numbering, row: TrueRow, truth: Truth
+    own: Sequence[tuple[Found, Placement]],
+    document: Found,
+    numbering: Numbering,
+    row: TrueRow,
+    truth: Truth,
+    mm_per_unit: float,
 ) -> Found:
-    """Counts over the mapped placeable detections: of those with a span, and all for blade and side."""
+    """Counts over the mapped placeable detections: of those with a span, or an edge, and all for blade and side."""
     blades: Counter[str] = Counter()
     sides: Counter[str] = Counter()
-    errors, ends = [], []
+    errors, ends, beside, within = [], [], [], []
     for line, place in own:
         number = place.true_defect or 0
         finding = row.findings[number]
         told = _number(line, document)
         blades["unknown" if told is None else "right" if told == numbering.number(finding.blade) else "wrong"] += 1
         sides[_side(line.get("side"), finding)] += 1
+        true = float(row.span(truth.defects[number].center[None])[0])
+        if line.get("edge_distance") is not None:
+            unit_mm = 1.0 if line.get("length_unit") == "mm" else mm_per_unit
+            told_mm = float(line["edge_distance"]) * unit_mm
+            # Which of its edges is the nearer one that was seen the result need not know.
+            beside.append(min(abs(told_mm - true_mm) for true_mm in row.edge_distances(finding, true)))
+            within.append(beside[-1] <= 2.0 * float(line["edge_distance_sigma"]) * unit_mm)
         if line.get("span") is not None:
-            true = float(row.span(truth.defects[number].center[None])[0])
             errors.append(abs(float(line["span"]) - true))
             if abs(true - 0.5) > SPAN_WITHIN:
                 ends.append((float(line["span"]) > 0.5) == (true > 0.5))
@@ -222,6 +233,10 @@ def _detections(
         "span": len(errors),
         "span_within": sum(error <= SPAN_WITHIN for error in errors),
         "span_median": float(np.median(errors)) if errors else None,
+        "edge_told": len(beside),
+        "edge_median_mm": float(np.median(beside)) if beside else None,
+        "edge_p95_mm": float(np.percentile(beside, 95)) if beside else None,
+        "edge_within_2_sigma": float(np.mean(within)) if within else None,
         "end_told": len(ends),
         "end_right": sum(ends),
     }

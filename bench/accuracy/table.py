@@ -55,6 +55,8 @@ def _row_rows(number: str, row: dict[str, Any]) -> Iterator[tuple[str, str]]:
         counts = " / ".join(str(one[f"{name}_{what}"]) for what in ("right", "wrong", "unknown"))
         yield f"{name} right / wrong / unknown, of mapped detections", f"{counts} of {one['count']}"
     yield "span within 0.05; median error", f"{one['span_within']} of {one['span']}; {_text(one['span_median'])}"
+    edges = " / ".join(_text(one[name]) for name in ("edge_median_mm", "edge_p95_mm", "edge_within_2_sigma"))
+    yield "distance to an edge: told; error median / 95 % (mm), within 2 sigma", f"{one['edge_told']}; {edges}"
     yield "root or tip right", f"{one['end_right']} of {one['end_told']}"
     seen = row.get("coverage")
     if seen is None:

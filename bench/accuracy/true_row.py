@@ -49,6 +49,11 @@ class TrueRow:
         span: F64 = (np.hypot(points[:, 0], points[:, 1]) - self.root_mm) / (self.tip_mm - self.root_mm)
         return span
 
+    def edge_distances(self, finding: TrueFinding, span: float) -> tuple[float, float]:
+        """Along the chord from a finding at a share of the span to the leading and to the trailing edge, mm."""
+        chord = self.chord_mm[0] + (self.chord_mm[1] - self.chord_mm[0]) * span
+        return finding.chord * chord, (1.0 - finding.chord) * chord
+
     def blade(self, points: F64) -> I64:
         """(n,) the blade whose section is nearest, by the place across its chord."""
         span = self.span(points)

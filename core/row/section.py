@@ -34,10 +34,14 @@ BANDS = 8
 """Radii at which the edges are sought."""
 STRIP_SPACINGS = 3.0
 """Width of the strip at the end of a chord, in spacings of the points."""
-END_PERCENT = 1.0
+END_PERCENT = 2.0
 """What lies beyond is astray."""
-TURNED = 0.25
-"""Share of the points in that strip that look away from the sheet's normal: the surface goes round an edge there."""
+BOTH, LEAST_DENSE = 0.1, 0.5
+"""The surface goes round an edge where the lesser of both sides has this share of the points in that strip, and the
+strip this share of the points that are usual. True edges have 0.15 to 0.5, where the view ends it is up to 0.09."""
+TURNED, DENSE = 0.15, 1.0
+"""The same where this share of them looks along the chord, and the strip is no thinner than usual. Where the view ends
+the faces of a torn border look anywhere (up to 0.7), and points are few (0.3 to 0.85 of what is usual)."""
 
 
 @dataclass(frozen=True)
@@ -155,9 +159,10 @@ def _edge(chord: F64, rho: F64, cosine: F64, spacing: float, end: int) -> Edge |
             continue
         last = float(np.percentile(end * chord[own], 100.0 - END_PERCENT))
         strip = own & (end * chord > last - STRIP_SPACINGS * spacing)
+        dense = strip.sum() / (STRIP_SPACINGS * _usual_count(chord[own], spacing))
         both = min(float((way * cosine[strip] > FACING).mean()) for way in (1, -1))
         turned = float((np.abs(cosine[strip]) < 2.0 * FACING).mean())
-        if max(both, turned) > TURNED:
+        if (both > BOTH and dense > LEAST_DENSE) or (turned > TURNED and dense > DENSE):
             places.append((float(np.median(rho[own])), end * last))
     if len(places) <= BANDS / 2:
         return None
@@ -167,3 +172,9 @@ def _edge(chord: F64, rho: F64, cosine: F64, spacing: float, end: int) -> Edge |
     at = float(np.median(y - slope * x))
     scatter = 1.4826 * float(np.median(np.abs(y - at - slope * x)))
     return Edge(at, slope, float(np.hypot(scatter, spacing)))
+
+
+def _usual_count(chord: F64, spacing: float) -> float:
+    """Points within one spacing along the chord, about the median point: what strays off the blade counts little."""
+    cell = np.floor((chord - chord.min()) / spacing).astype(np.int64)
+    return float(np.median(np.bincount(cell)[cell]))

@@ -12,7 +12,7 @@ from pathlib import Path
 from core.errors import BadInput
 from core.flags import Flag, Verdict, frames_between, in_order, verdict_by
 from core.json_files import JsonObject, read_json, replace_file, write_json
-from core.mapping.load import read_surface
+from core.mapping.facing import read_surface
 from core.outputs import (
     CONFIDENCE,
     DEFECT_GLB,

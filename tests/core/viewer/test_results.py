@@ -243,6 +243,16 @@ def test_a_run_that_lost_its_surface_names_the_stage() -> None:
     assert shown["row"] == {"status": "unknown", "reason": "not_computed"}
 
 
+def test_blades_whose_coverage_is_told_bear_the_names_of_the_tables() -> None:
+    seen = [{"blade": number, "share": 1.0, "views_2": 0.5} for number in (1, 2)]
+    row = {"status": "estimated", "coverage": seen, "on_first": {"names": {"1": "4"}}}
+    further = viewer_document(ViewerSource(report_with("dent"), None, None, model=1, models=(0, 1), row=row))
+    assert [(one["blade"], one["name"]) for one in further["row"]["coverage"]] == [(1, "4"), (2, "1-B2")]
+    assert "name" not in seen[0], "the object of row.json stays as it is"
+    first = viewer_document(ViewerSource(report_with("dent"), None, None, row={"status": "user", "coverage": seen}))
+    assert [one["name"] for one in first["row"]["coverage"]] == ["1", "2"]
+
+
 def test_addresses_of_pages() -> None:
     assert [page_of(1, 0), page_of(0, 1), page_of(2, 1)] == [
         "../models/1/viewer/index.html",

@@ -1,10 +1,11 @@
-"""The row on the page of a further model: its blades bear the names of the tables."""
+"""The row on the page of a further model: its blades bear the names of the tables, and the compass its words."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from core.json_files import read_json
@@ -46,3 +47,32 @@ def test_a_blade_has_one_name_in_all_places(tmp_path: Path, open_page: Open) -> 
     assert fact.inner_text().startswith("2")
     assert fact.get_by_role("button").count() == 0, "blade 2 of this surface is another one"
     assert shown.complaints == []
+
+
+TURNS = [(0, -1, 0), (1, 0, 0), (0.7, 0.7, 0), (-0.4, -0.9, 0)]
+"""Which way is up on the screen."""
+
+
+AXES = {"up": (0, -50, 5), "aside": (50, 0, 5), "slant": (40, -40, 5), "deep": (3, 2, 60)}
+"""A point of the axis by where it lies, as the cameras see it."""
+
+
+@pytest.mark.parametrize("point", AXES.values(), ids=list(AXES))
+def test_the_words_of_the_compass_lie_in_its_dial(tmp_path: Path, open_page: Open, point: tuple[float, ...]) -> None:
+    """Wherever the root is, and however the view is turned."""
+    shown = open_page(with_row(tmp_path, axis=[point[1], -point[0], 1e-6], point=point, root="inside"))
+    for up in TURNS:
+        camera = [0, 0, -3, 0, 0, 4, *np.divide(up, np.linalg.norm(up)), 35]
+        shown.page.evaluate("camera => { location.hash = `cam=${camera}` }", camera)
+        shown.settle()
+        assert shown.page.evaluate("window.bladeatlas.camera()") == pytest.approx(camera, abs=1e-3)
+        boxes = shown.page.evaluate(
+            "[...document.querySelectorAll('.lines .dial, .lines text.way')]"
+            ".map(one => [one.textContent, one.getBBox()]).map(([text, at]) => [text, at.x, at.y, at.width, at.height])"
+        )
+        (_, left, top, width, _), *words = boxes
+        assert sorted(", ".join(text for text, *_ in words).split(", ")) == ["root", "tip", "up"]
+        middle = np.array([left, top]) + width / 2
+        for text, x, y, wide, high in words:
+            corners = np.array([[x, y], [x + wide, y], [x, y + high], [x + wide, y + high]])
+            assert np.linalg.norm(corners - middle, axis=1).max() < width / 2, (text, up)

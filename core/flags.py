@@ -5,6 +5,7 @@ A flag is a small fact. Stages put flags into their facts, the report collects t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -136,6 +137,20 @@ class Flag:
         return cls(
             row["code"], _severity(row["severity"]), row.get("value"), row.get("threshold"), row.get("where", "")
         )
+
+
+_BETWEEN = re.compile(r"between frames (\d+) and (\d+)")
+
+
+def between_frames(before: int, after: int) -> str:
+    """The `where` of a flag on what lies between two frames; `frames_between` reads it back."""
+    return f"between frames {before} and {after}"
+
+
+def frames_between(where: str) -> tuple[int, int] | None:
+    """The two frames that the `where` of a published flag names; None where it names another place."""
+    found = _BETWEEN.search(where)
+    return None if found is None else (int(found[1]), int(found[2]))
 
 
 def _rounded(value: float | None) -> float | None:

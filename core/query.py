@@ -15,23 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import BadInput, StageFailed
-from core.io.sparse import open_model
-from core.mapping.scene import face_normals, oriented
+from core.mapping.facing import read_surface
+from core.mapping.scene import face_normals
 from core.mapping.surface import Surface
 from core.outputs import DEFECT_SURFACE, DEFECTS, FRAMES, SPARSE, SUMMARY, model_folder, model_numbers
 from core.report.csv_form import read_csv
 from core.scene.detection import Reason
 from core.scene.frame import Crop
-from core.scene.views import Views, views_of
-from core.surface.ply import Mesh, read_mesh
-from core.surface.support import point_spacing
+from core.scene.views import Views
+from core.surface.ply import Mesh
+from core.surface.support import vertex_spacing
 from core.timeline.seen import views_of_place
 
 F64 = NDArray[np.float64]
 
 GRID = 5
 """Pixels across a drawn box, and down it, that are asked where it lies."""
-_SPACING_SAMPLE = 20_000
 TOLERANCE_SPACINGS = 5.0
 FAR_SHARE = 0.1
 """A place farther from the surface than this share of its diagonal is a mistake: other units, or another model."""
@@ -108,16 +107,15 @@ class Result:
                 raise BadInput(f"{folder.name} has no {name.relative_to(folder)}: is it a result?", where=name.name)
         self._frames = _frames(folder / FRAMES)
         self._crop, self._videos = _summary(folder / SUMMARY, self._frames)
-        self.views: Views = views_of(open_model(root / SPARSE))
+        self.mesh: Mesh
+        self.views: Views
         try:
-            self.mesh: Mesh = oriented(read_mesh(root / DEFECT_SURFACE), self.views)
+            self.mesh, self.views = read_surface(root / SPARSE, root / DEFECT_SURFACE)
         except StageFailed as error:
-            raise BadInput(error.message, where=_file(DEFECT_SURFACE)) from None
+            raise BadInput(error.message, where=error.where) from None
         self._surface = Surface(self.mesh.vertices, self.mesh.faces)
         self._normals = face_normals(self.mesh)
-        step = max(1, len(self.mesh.vertices) // _SPACING_SAMPLE)
-        # The vertices of a Poisson mesh lie about as far apart as the points that support it.
-        self._spacing = float(point_spacing(self.mesh.vertices[::step]) / np.sqrt(step))
+        self._spacing = vertex_spacing(self.mesh)
 
     def _length_of(self, video: int) -> _Length:
         """The length of a video; `BadInput` when there is no such one."""

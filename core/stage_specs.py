@@ -248,6 +248,6 @@ STAGES: dict[str, StageSpec] = {
             weight=7.7,
         ),
         _spec("gallery", GalleryProduct, "gallery", "mapping.method", version=7, reads_video=True, weight=29),
-        _spec("viewer", ViewerProduct, version=6, weight=29, per_frame=True),
+        _spec("viewer", ViewerProduct, version=7, weight=29, per_frame=True),
     )
 }

@@ -18,7 +18,7 @@ from bench.accuracy.truth import Truth
 from core.geometry.similarity import Similarity
 from core.mapping.surface import Surface
 from core.row.model import RowStatus
-from core.scene.on_row import Side
+from core.scene.on_row import Side, blade_number
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -186,15 +186,9 @@ def _numbering(document: Found, direction: F64, numbers: Sequence[int], blades: 
 
 
 def _number(line: Found, document: Found) -> int | None:
-    """The model's own number of the blade that the column `blade` names.
-
-    Of further models it has the model's number before it, or is that of the first model's row.
-    """
+    """The model's own number of the blade that the column `blade` names."""
     name = line.get("blade")
-    if name in (None, ""):
-        return None
-    own = {first: number for number, first in (document.get("on_first") or {}).get("names", {}).items()}
-    return int(own.get(str(name), str(name).rsplit("B", 1)[-1]))
+    return None if name in (None, "") else blade_number(str(name), document.get("on_first"))
 
 
 def _detections(

@@ -25,7 +25,7 @@ from bench.scenes.detector import Visible
 from bench.scenes.make import Seen, frame_times, write_truth
 from bench.scenes.path import make_path
 from bench.scenes.render import Painter, true_lens
-from core.flags import Flag, Severity, verdict_by
+from core.flags import Flag, Severity, between_frames, verdict_by
 from core.geometry.pose import transform
 from core.outputs import DEFECT_SURFACE, DEFECTS, DETECTIONS, FRAMES, QUALITY, SPARSE, SUMMARY, SURFACE
 from core.report.tables import write_csv
@@ -161,7 +161,7 @@ def _write(
 
 def _write_quality(folder: Path, after: Sequence[int]) -> None:
     """The verdict of a run that saw the pictures jump before these frames of its own."""
-    jumps = [Flag("picture_jumps", Severity.WARNING, where=f"between frames {k - 1} and {k}") for k in after]
+    jumps = [Flag("picture_jumps", Severity.WARNING, where=between_frames(k - 1, k)) for k in after]
     document = {"verdict": verdict_by(jumps), "flags": [flag.explained() for flag in jumps]}
     (folder / QUALITY).write_text(json.dumps(document), encoding="utf-8")
 

@@ -1,7 +1,7 @@
 """Requests that are generated from the service's own description, to every call that is in it.
 
 Held of every answer: no 5xx, a status that the description names, and a body as it describes. A test asks a few of each
-with a fixed seed (`tests/api/test_openapi.py`); `bladeatlas-bench service` goes on for minutes.
+with a fixed seed (`tests/api/asking.py`); `bladeatlas-bench service` goes on for minutes.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from core.flags import Flag, Severity
+from core.flags import Flag, Severity, between_frames
 
 if TYPE_CHECKING:
     import pycolmap
@@ -89,5 +89,5 @@ def check_joins(tracks: Tracks, frames: I64, n_search: int) -> Flag | None:
         return None
     broken = points_across(tracks, ordered, 0.0).min() < BROKEN_POINTS
     severity = Severity.ERROR if broken else Severity.WARNING
-    where = f"between frames {ordered[weakest]} and {ordered[weakest + 1]}"
+    where = between_frames(ordered[weakest], ordered[weakest + 1])
     return Flag("weak_join", severity, float(across[weakest]), float(WEAK_POINTS), where)

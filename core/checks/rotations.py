@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.flags import Flag, Severity
+from core.flags import Flag, Severity, between_frames
 from core.viewgraph import PairTable
 
 if TYPE_CHECKING:
@@ -122,7 +122,5 @@ def check_rotations(found: Disagreement) -> Flag | None:
         return Flag("bent_model", Severity.ERROR, found.median_deg, MAX_MEDIAN_DEG, where)
     cut = worst_cut(found)
     if cut is not None and cut.median_deg > MAX_CUT_DEG:
-        return Flag(
-            "bent_model", Severity.ERROR, cut.median_deg, MAX_CUT_DEG, f"between frames {cut.frame} and {cut.frame + 1}"
-        )
+        return Flag("bent_model", Severity.ERROR, cut.median_deg, MAX_CUT_DEG, between_frames(cut.frame, cut.frame + 1))
     return None

@@ -16,16 +16,16 @@ from core.dense.cameras import Pinhole
 from core.dense.maps import map_paths, open_scene, read_map
 from core.geometry.boxes import Box
 from core.geometry.pose import Pose
-from core.io.sparse import open_model
 from core.mapping.consensus import looked_at
 from core.mapping.depth_consistency import DepthMaps
-from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal, oriented
+from core.mapping.facing import read_surface
+from core.mapping.scene import Scene, SparsePoints, cloud_tree, face_normals, mean_focal
 from core.mapping.support import read_sparse_model
 from core.mapping.surface import Surface
 from core.mapping.surface_rules import Matches
 from core.scene.frame import Crop, index_of_image
-from core.scene.views import Views, views_of
-from core.surface.ply import Mesh, read_mesh
+from core.scene.views import Views
+from core.surface.ply import read_mesh
 from core.surface.support import point_spacing
 from core.viewgraph import database_of, read_graph
 
@@ -77,20 +77,6 @@ def open_mapping_scene(
         focal_px=mean_focal(views.camera),
         model=model,
     )
-
-
-def read_surface(model_dir: Path, mesh_path: Path) -> tuple[Mesh, Views]:
-    """A surface, its faces counter-clockwise seen from the cameras (`core.mapping.scene.oriented`), and the views.
-
-    Args:
-        model_dir: COLMAP model, image id = frame index + 1.
-        mesh_path: surface in its world frame.
-
-    Raises:
-        StageFailed: one of the two cannot be read.
-    """
-    views = views_of(open_model(model_dir))
-    return oriented(read_mesh(mesh_path), views), views
 
 
 def open_depth_maps(undistorted: Path, folders: Iterable[Path]) -> DepthMaps:

@@ -82,26 +82,6 @@ class Scene:
         return pose_covariance(in_cam, residuals, self.focal_px)
 
 
-def oriented(mesh: Mesh, views: Views) -> Mesh:
-    """The mesh with its faces turned towards the cameras, should most of them show their back.
-
-    A ray through the middle of every view is asked; with no hit at all the mesh stays as it is.
-    """
-    middle = np.array([[views.camera.width / 2, views.camera.height / 2]])
-    rays = np.concatenate([views.rays(middle, R) for R in views.R]) if len(views.R) else np.zeros((0, 3))
-    hits = Surface(mesh.vertices, mesh.faces).cast(views.centers, rays)
-    if not hits.hit.any() or (hits.cosine[hits.hit] > 0).mean() >= 0.5:
-        return mesh
-    return Mesh(
-        mesh.vertices,
-        np.ascontiguousarray(mesh.faces[:, ::-1]),
-        mesh.colors,
-        None if mesh.normals is None else -mesh.normals,
-        mesh.extra,
-        mesh.comments,
-    )
-
-
 def face_normals(mesh: Mesh) -> F64:
     """(m, 3) unit normals; zero for a face without area."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))

@@ -68,7 +68,7 @@ def search_row(mesh: Mesh, views: Views, seed: int) -> Hypothesis | NoRow:
     """Axis and pitch of the row that a mesh shows best; whether it is a row at all `describe_row` says.
 
     Args:
-        mesh: oriented towards the cameras (`core.mapping.scene.oriented`).
+        mesh: oriented towards the cameras (`core.mapping.facing.oriented`).
         views: the model's, in order of time.
         seed: of the points drawn.
     """

@@ -18,6 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from core.flags import between_frames
 from core.row.turn import Axis
 
 F64 = NDArray[np.float64]
@@ -94,8 +95,7 @@ class Leap:
     @property
     def where(self) -> str:
         """For people."""
-        one, other = self.frames
-        return f"between frames {one} and {other}, where the camera's turn leaps by {abs(self.pitches)} of the pitches"
+        return f"{between_frames(*self.frames)}, where the camera's turn leaps by {abs(self.pitches)} of the pitches"
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,14 @@ Results of earlier releases have no row; surface, model and tables are all that 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import BadInput
-from core.flags import Flag, Verdict, in_order, verdict_by
+from core.flags import Flag, Verdict, frames_between, in_order, verdict_by
 from core.json_files import JsonObject, read_json, replace_file, write_json
-from core.mapping.load import read_surface
+from core.mapping.facing import read_surface
 from core.outputs import (
     CONFIDENCE,
     DEFECT_GLB,
@@ -53,7 +52,6 @@ from core.surface.ply import read_mesh, write_mesh
 from core.videos import moment
 
 SEED = 0
-_BETWEEN = re.compile(r"between frames (\d+) and (\d+)")
 _WRITTEN = ("blade", *ROW_COLUMNS)
 
 Rows = list[JsonObject]
@@ -225,8 +223,8 @@ def _moments(path: Path) -> dict[int, float]:
 def _jumps(path: Path) -> list[tuple[int, int]]:
     """Neighbouring frames between which the pictures jump, as the flags of the result name them."""
     flags = read_json(path)["flags"] if path.is_file() else []
-    named = [_BETWEEN.search(flag.get("where") or "") for flag in flags if flag["code"] == "picture_jumps"]
-    return [(int(found[1]), int(found[2])) for found in named if found is not None]
+    named = [frames_between(flag.get("where") or "") for flag in flags if flag["code"] == "picture_jumps"]
+    return [frames for frames in named if frames is not None]
 
 
 def _without(row: DetectionRow) -> DetectionRow:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
 from core.json_files import JsonObject
+
+OF_FURTHER = re.compile(r"(\d{1,3})-B(\d{1,3})")
+"""A blade of a further model by that model's own numbers: number of the model, number of the blade."""
 
 
 class Side(StrEnum):
@@ -67,8 +71,30 @@ def blade_name(number: int | str, model: int, on_first: JsonObject | None) -> st
     """
     if not model:
         return str(number)
+    return _names(on_first).get(str(number), f"{model}-B{number}")
+
+
+def blade_number(name: str, on_first: JsonObject | None) -> int:
+    """The number in its own model of a blade that the tables name: what `blade_name` was made of.
+
+    Args:
+        name: of a blade of that model.
+        on_first: as of `blade_name`; None for the first model.
+
+    Raises:
+        ValueError: no blade has this name.
+    """
+    of_further = OF_FURTHER.fullmatch(name)
+    if of_further is not None:
+        return int(of_further[2])
+    own = {of_first: number for number, of_first in _names(on_first).items()}
+    return int(own.get(name, name))
+
+
+def _names(on_first: JsonObject | None) -> Mapping[str, str]:
+    """Numbers on the first model's row by the model's own; empty for what is not known to lie on it."""
     names: Mapping[str, str] = (on_first or {}).get("names", {})
-    return names.get(str(number), f"{model}-B{number}")
+    return names
 
 
 NOT_ON_A_ROW = RowColumns()

@@ -8,13 +8,14 @@ from typing import Literal, Self
 
 from pydantic import field_validator, model_validator
 
+from core.scene.on_row import OF_FURTHER
 from core.settings.base import Group, option
 
 LEAST_BLADES, MOST_BLADES = 7, 180
 """Of a whole row."""
 
 
-_SAME = re.compile(r"(\d{1,3})-B(\d{1,3})=(\d{1,3})")
+_SAME = re.compile(rf"{OF_FURTHER.pattern}=(\d{{1,3}})")
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 from core.io.frames import read_frames
 from core.io.sparse import model_folder
 from core.io.surface import supported_mesh
-from core.mapping.load import read_surface
+from core.mapping.facing import read_surface
 from core.products.front import BridgeProduct
 from core.products.surface import BladesProduct
 from core.row.estimate import describe_row, without_leap

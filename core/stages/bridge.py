@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.features.io import feature_files, read_features
-from core.flags import Flag, Severity
+from core.flags import Flag, Severity, between_frames
 from core.io.frames import read_frames
 from core.matching.bridges import Pair, agreeing, bridge_places, components_of, find_gaps, is_strong, select
 from core.matching.jumps import dense_enough, find_jumps, match_density, positions, spans_any
@@ -74,13 +74,11 @@ def _matched(task: StageTask, pairs: Sequence[Pair]) -> PairTable:
 
 
 def _jump_flags(jumps: list[int]) -> list[Flag]:
-    return [Flag("picture_jumps", Severity.WARNING, where=f"between frames {cut} and {cut + 1}") for cut in jumps]
+    return [Flag("picture_jumps", Severity.WARNING, where=between_frames(cut, cut + 1)) for cut in jumps]
 
 
 def _gap_flags(spanned: list[tuple[int, int]]) -> list[Flag]:
-    return [
-        Flag("gap_spanned", Severity.INFO, where=f"between frames {before} and {after}") for before, after in spanned
-    ]
+    return [Flag("gap_spanned", Severity.INFO, where=between_frames(before, after)) for before, after in spanned]
 
 
 def _spanned(gaps: list[tuple[int, int]], pairs: list[list[int]]) -> list[tuple[int, int]]:

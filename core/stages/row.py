@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.io.sparse import model_folder
 from core.io.surface import supported_mesh
-from core.mapping.load import read_surface
+from core.mapping.facing import read_surface
 from core.products.surface import RowProduct
 from core.row.estimate import search_row
 from core.row.files import write_found

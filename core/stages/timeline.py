@@ -11,7 +11,7 @@ from core.io.surface import defect_glb, defect_mesh, supported_mesh
 from core.io.timeline import write_timeline
 from core.json_files import JsonObject, write_json
 from core.mapping.coloring import blend
-from core.mapping.scene import oriented
+from core.mapping.facing import oriented
 from core.measure.scale import find_scale
 from core.outputs import ROW, ROW_MAP
 from core.products.search import ExtendProduct

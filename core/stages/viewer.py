@@ -6,14 +6,14 @@ import shutil
 from collections.abc import Iterable
 
 from core.io.frames import read_crop
-from core.io.sparse import read_model
+from core.io.sparse import model_folder
 from core.io.surface import defect_mesh, supported_mesh
 from core.io.timeline import read_defects
+from core.mapping.facing import read_surface
 from core.outputs import SURFACE_GLB
 from core.products.surface import ViewerProduct
 from core.scene.defect import DefectRecord
 from core.scene.frame import image_name
-from core.scene.views import views_of
 from core.stage import StageTask
 from core.surface.ply import read_mesh
 from core.viewer.build import with_blades, write_scene
@@ -22,8 +22,8 @@ from core.viewer.scene import FRAMES, FULL, best_frames
 
 def run(task: StageTask) -> ViewerProduct:
     """Write `surface.glb`, `scene.json`, `frames/` and `surface/`."""
-    views = views_of(read_model(task.input("extend")))
-    mesh = with_blades(read_mesh(supported_mesh(task.input("mesh"))), read_mesh(defect_mesh(task.input("timeline"))))
+    facing, views = read_surface(model_folder(task.input("extend")), supported_mesh(task.input("mesh")))
+    mesh = with_blades(facing, read_mesh(defect_mesh(task.input("timeline"))))
     records = read_defects(task.input("timeline"))
     task.report(1, 5, "copying the best views")
     full = _keep_best(task, records)

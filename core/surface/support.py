@@ -15,6 +15,8 @@ from core.surface.ply import Mesh
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+_SPACING_SAMPLE = 20_000
+
 
 def point_spacing(points: F64) -> float:
     """Median distance of a point to its nearest neighbour; 0 for fewer than two points."""
@@ -22,6 +24,15 @@ def point_spacing(points: F64) -> float:
         return 0.0
     distance: F64 = np.asarray(cKDTree(points).query(points, k=2)[0])
     return float(np.median(distance[:, 1]))
+
+
+def vertex_spacing(mesh: Mesh) -> float:
+    """Typical distance of a vertex to the next, told by some of them.
+
+    The vertices of a Poisson mesh lie about as far apart as the points that support it.
+    """
+    step = max(1, len(mesh.vertices) // _SPACING_SAMPLE)
+    return float(point_spacing(mesh.vertices[::step]) / np.sqrt(step))
 
 
 def cloud_distance(vertices: F64, points: F64) -> F64:

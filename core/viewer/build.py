@@ -10,20 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.json_files import JsonObject
-from core.mapping.scene import oriented
 from core.outputs import SURFACE_GLB
 from core.scene.defect import DefectRecord
 from core.scene.frame import Crop
 from core.scene.views import Views
 from core.surface.ply import Mesh
-from core.surface.support import point_spacing
+from core.surface.support import vertex_spacing
 from core.viewer.parts import viewer_parts
 from core.viewer.portraits import write_portraits
 from core.viewer.quantized import write_quantized_glb
 from core.viewer.scene import SurfaceFacts, ViewerScene
 
 F64 = NDArray[np.float64]
-_SPACING_SAMPLE = 20_000
 _ROTATION_DECIMALS, _TRANSLATION_DIGITS = 7, 7
 """Of the poses: a point of the surface moves by less than a thousandth of a pixel."""
 
@@ -41,20 +39,20 @@ def write_scene(
 
     Args:
         folder: existing.
-        mesh: supported surface in the pictures' colours, with `support` and, where blades are known, `blade`.
+        mesh: supported surface in the pictures' colours, its faces counter-clockwise seen from the cameras
+            (`core.mapping.facing.read_surface`), with `support` and, where blades are known, `blade`.
         views: registered views of the model.
         crop: part of the source frames that was used.
         records: defects of the model; their faces are of `mesh`.
         full: frames whose pictures lie beside the surface, at the source's size.
         threads: side by side.
     """
-    turned = oriented(mesh, views)
-    parts = viewer_parts(turned, {record.id: record.faces for record in records})
+    parts = viewer_parts(mesh, {record.id: record.faces for record in records})
     write_quantized_glb(folder / SURFACE_GLB, parts)
-    portraits = write_portraits(folder, turned, views, records, threads)
+    portraits = write_portraits(folder, mesh, views, records, threads)
     nodes = tuple(record.id for record in records if len(record.faces))
     faces = sum(len(part.faces) for part in parts.values())
-    surface = SurfaceFacts(faces, len(mesh.faces), _spacing(mesh))
+    surface = SurfaceFacts(faces, len(mesh.faces), vertex_spacing(mesh))
     camera, poses, up = camera_of(views, crop), poses_of(views), up_of(views)
     scene = ViewerScene(camera, poses, up, surface, nodes, tuple(portraits), tuple(full))
     scene.write(folder)
@@ -65,12 +63,6 @@ def with_blades(mesh: Mesh, colored: Mesh) -> Mesh:
     """The mesh with the blades of `colored`, which has the same vertices, where these are known."""
     blade = colored.extra.get("blade")
     return mesh if blade is None else replace(mesh, extra={**mesh.extra, "blade": blade})
-
-
-def _spacing(mesh: Mesh) -> float:
-    """Typical distance of a vertex to the next: those of a Poisson mesh lie about as far apart as its points."""
-    step = max(1, len(mesh.vertices) // _SPACING_SAMPLE)
-    return float(point_spacing(mesh.vertices[::step]) / np.sqrt(step))
 
 
 def camera_of(views: Views, crop: Crop) -> JsonObject:

@@ -19,6 +19,7 @@ from core.report.record import Item
 from core.scene.defect import MODEL_UNIT, DefectRecord, least_defects
 from core.scene.detection import REASONS, Outcome
 from core.scene.frame import image_name
+from core.scene.on_row import blade_name
 from core.viewer.scene import FRAMES, Pictures, ViewerScene, best_frames
 
 SCHEMA_VERSION = 1
@@ -112,7 +113,7 @@ def viewer_document(source: ViewerSource) -> JsonObject:
         "detections": [_detection(row, source, size) for row in report.detections],
         "defects": [_defect(record, scene, limits.get(record["id"])) for record in own],
         "events": [event for event in report.timeline if event["defect_id"] in ids],
-        "row": source.row or UNKNOWN_ROW,
+        "row": _row(source),
         "verdict": report.verdict,
         "state": report.summary.get("state"),
         "message": report.summary.get("message"),
@@ -123,6 +124,16 @@ def viewer_document(source: ViewerSource) -> JsonObject:
         "pictures_reason": source.no_pictures if source.pictures is None else None,
         "up": None if scene is None else scene.up,
     }
+
+
+def _row(source: ViewerSource) -> Item:
+    """The object of row.json, with the names that the tables give to the blades whose coverage it tells."""
+    row = source.row
+    if not row:
+        return UNKNOWN_ROW
+    on_first = row.get("on_first")
+    seen = [{**one, "name": blade_name(one["blade"], source.model, on_first)} for one in row.get("coverage") or ()]
+    return {**row, "coverage": seen} if seen else row
 
 
 def _in_all(report: Report) -> list[int] | None:

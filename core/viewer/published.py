@@ -11,8 +11,8 @@ from pathlib import Path
 from core.errors import BadInput, StageFailed
 from core.fingerprint import digest_of_file
 from core.flags import Verdict
-from core.io.sparse import open_model
 from core.json_files import JsonObject, read_json
+from core.mapping.facing import read_surface
 from core.outputs import (
     CONFIDENCE,
     DEFECT_SURFACE,
@@ -36,7 +36,6 @@ from core.report.build import Report
 from core.report.csv_form import read_csv
 from core.scene.defect import DefectRecord
 from core.scene.frame import Crop, Frame, Role, RunFrames, image_name
-from core.scene.views import views_of
 from core.surface.ply import read_mesh
 from core.video.factory import open_video
 from core.video.probe import probe_video
@@ -146,8 +145,9 @@ def _scene(
         return None
     records = [DefectRecord.from_dict(dict(one)) for one in report.defects if int(one.get("model") or 0) == model]
     try:
-        mesh = with_blades(read_mesh(root / SURFACE), read_mesh(root / DEFECT_SURFACE))
-        return write_scene(made, mesh, views_of(open_model(root / SPARSE)), crop, records)
+        facing, views = read_surface(root / SPARSE, root / SURFACE)
+        mesh = with_blades(facing, read_mesh(root / DEFECT_SURFACE))
+        return write_scene(made, mesh, views, crop, records)
     except StageFailed as error:
         raise BadInput(error.message, where=root.name) from None
 

@@ -29,8 +29,8 @@ from store.models import Inspection, Upload
 from store.transfers import WantedFile
 from store.uploads import UploadFile
 from tests.api.conftest import ROOT, Backend, wait_until
+from tests.api.fetching import Place, kept, make_place, refused, uploads_left
 from tests.api.file_server import DATA, HERE, Files
-from tests.api.test_input_by_url import Place, kept, make_place, refused, uploads_left
 from tests.databases import BOTH, database
 
 pytestmark = pytest.mark.slow

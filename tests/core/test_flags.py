@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from core.errors import StageFailed
-from core.flags import Flag, Severity, worst
+from core.flags import Flag, Severity, between_frames, frames_between, worst
 
 
 def test_a_flag_survives_the_way_through_json() -> None:
@@ -22,6 +22,13 @@ def test_a_flag_survives_the_way_through_json() -> None:
 def test_unknown_codes_and_severities_are_refused(code: str, severity: str) -> None:
     with pytest.raises(StageFailed):
         Flag.from_dict({"code": code, "severity": severity})
+
+
+def test_frames_are_read_from_the_place_that_names_them() -> None:
+    assert between_frames(7, 12) == "between frames 7 and 12", "what published results hold"
+    assert frames_between(between_frames(7, 12)) == (7, 12)
+    assert frames_between(Flag("weak_join", Severity.ERROR, where=between_frames(7, 8)).of_model(2).where) == (7, 8)
+    assert frames_between("frames 0-60") is None
 
 
 def test_worst_orders_by_severity() -> None:

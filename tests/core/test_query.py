@@ -192,6 +192,17 @@ def test_a_summary_without_the_videos_length_allows_what_took_part(folder: Path,
         Result(old).frame_at(5.6)
 
 
+@pytest.mark.parametrize(
+    ("broken", "named"), [("sparse/cameras.bin", "sparse"), ("mapping/mesh_defects.ply", "mesh_defects.ply")]
+)
+def test_what_cannot_be_read_is_named(folder: Path, tmp_path: Path, broken: str, named: str) -> None:
+    result = shutil.copytree(folder, tmp_path / "broken")
+    (result / broken).write_bytes(b"")
+    with pytest.raises(BadInput) as caught:
+        Result(result)
+    assert caught.value.where == named
+
+
 def test_a_folder_that_is_no_result(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"has no frames\.csv"):
         Result(tmp_path)

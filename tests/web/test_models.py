@@ -21,7 +21,7 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = opened("two_models", tmp_path_factory.mktemp("two") / "result")
     page = folder / "models" / "1" / "viewer"
     document = read_json(page / "viewer.json")
-    document["row"] = {"status": "estimated", "coverage": [{"blade": "1-B4", "views_2": 0.75}]}
+    document["row"] = {"status": "estimated", "coverage": [{"blade": 4, "name": "1-B4", "views_2": 0.75}]}
     for one in document["defects"]:
         one["blade"] = "1-B4"
     write_script(page / "data.js", document)

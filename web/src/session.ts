@@ -4,6 +4,7 @@ import { bytesOf, SCHEMA_VERSION, type Delivered, type Detection, type Finding, 
 import { readGlb } from "./model/glb";
 import { makeLens } from "./model/lens";
 import { marksOf } from "./model/marks";
+import { bladesOf } from "./model/row";
 import { Questions } from "./scene/questions";
 import { Surface } from "./scene/surface";
 
@@ -51,6 +52,7 @@ export const findings: ReadonlyMap<number, Finding> = new Map(data.defects.map((
 export const frames: ReadonlyMap<number, Frame> = new Map(data.frames.map((one) => [one.index, one]));
 export const detections: ReadonlyMap<number, Detection> = new Map(data.detections.map((one) => [one.id, one]));
 export const detectionsOfFrame: ReadonlyMap<number, readonly Detection[]> = grouped(data.detections, (one) => one.frame);
+export const seenBlades = bladesOf(data.row);
 export const visitsOfFinding: ReadonlyMap<number, readonly Visit[]> = grouped(data.events, (one) => one.defect_id);
 
 /** Frames by video and time. */

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,9 @@ import numpy as np
 import pytest
 
 from core.errors import BadInput
+from core.outputs import DEFECT_SURFACE, SURFACE
 from core.report.build import Report, build_report
+from core.surface.ply import read_mesh, write_mesh
 from core.viewer.deliver import bundle, write_page
 from core.viewer.document import ViewerSource, page_of, viewer_document
 from core.viewer.published import build_pages
@@ -93,6 +96,22 @@ def test_poses_and_lens_lead_back_to_the_pixels(name: str) -> None:
         assert middle == pytest.approx(defect["centroid"], abs=0.3)
     assert asked >= (name == PAGES[0]) * 2
     assert shown["up"] == pytest.approx([0, -1, 0])
+
+
+def test_a_surface_that_is_turned_over_has_the_same_page(tmp_path: Path) -> None:
+    pages = []
+    for name in ("as_it_is", "turned_over"):
+        folder = opened("one_model", tmp_path / name)
+        if name == "turned_over":
+            for surface in (SURFACE, DEFECT_SURFACE):
+                mesh = read_mesh(folder / surface)
+                turned = replace(mesh, faces=np.ascontiguousarray(mesh.faces[:, ::-1]))
+                write_mesh(folder / surface, turned, mesh.comments)
+        build_pages(folder)
+        files = {path.relative_to(folder): path for path in sorted((folder / "viewer").rglob("*")) if path.is_file()}
+        pages.append({str(name): path.read_bytes() for name, path in files.items()})
+        assert "viewer/surface.glb" in pages[-1]
+    assert pages[0] == pages[1]
 
 
 def test_models_lead_to_each_other() -> None:
@@ -222,6 +241,16 @@ def test_a_run_that_lost_its_surface_names_the_stage() -> None:
     shown = viewer_document(source)
     assert "mesh" in shown["surface_reason"]
     assert shown["row"] == {"status": "unknown", "reason": "not_computed"}
+
+
+def test_blades_whose_coverage_is_told_bear_the_names_of_the_tables() -> None:
+    seen = [{"blade": number, "share": 1.0, "views_2": 0.5} for number in (1, 2)]
+    row = {"status": "estimated", "coverage": seen, "on_first": {"names": {"1": "4"}}}
+    further = viewer_document(ViewerSource(report_with("dent"), None, None, model=1, models=(0, 1), row=row))
+    assert [(one["blade"], one["name"]) for one in further["row"]["coverage"]] == [(1, "4"), (2, "1-B2")]
+    assert "name" not in seen[0], "the object of row.json stays as it is"
+    first = viewer_document(ViewerSource(report_with("dent"), None, None, row={"status": "user", "coverage": seen}))
+    assert [one["name"] for one in first["row"]["coverage"]] == ["1", "2"]
 
 
 def test_addresses_of_pages() -> None:

@@ -20,12 +20,22 @@ export function visibleRow(row: Row, at: Vec3): { readonly tip: Vec3 } | null {
   return { tip: [sign * away[0], sign * away[1], sign * away[2]] };
 }
 
-/** Of each blade the share of its reconstructed surface that two views see at a usable angle; empty while it is not known. */
-export function coverageOf(row: Row): readonly { readonly blade: string; readonly seen: number }[] {
+export interface SeenBlade {
+  /** On the surface of this model. */
+  readonly number: number;
+  /** In the tables: by the numbers of the first model where it is known how its row goes on. */
+  readonly name: string;
+  /** Share of its reconstructed surface that two views see at a usable angle. */
+  readonly seen: number;
+}
+
+/** The blades that were seen; empty while that is not known. */
+export function bladesOf(row: Row): readonly SeenBlade[] {
   const blades = row["coverage"];
   if (!Array.isArray(blades)) return [];
-  return blades.flatMap((one: { blade?: unknown; views_2?: unknown } | null) =>
-    one && typeof one.views_2 === "number" && (typeof one.blade === "string" || typeof one.blade === "number") ? [{ blade: String(one.blade), seen: one.views_2 }] : [],
+  return blades.flatMap((one: { blade?: unknown; name?: unknown; views_2?: unknown } | null) =>
+    // Pages of earlier releases tell no names.
+    one && typeof one.blade === "number" && typeof one.views_2 === "number" ? [{ number: one.blade, name: String(one.name ?? one.blade), seen: one.views_2 }] : [],
   );
 }
 

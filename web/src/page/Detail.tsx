@@ -3,8 +3,7 @@
 import type { ComponentChildren, JSX } from "preact";
 import type { Detection, Finding } from "../model/data";
 import { bladeText, certainty, confidenceReasons, findingName, measured, percent, reasonText, seconds } from "../model/words";
-import { data, frames, surface, visitsOfFinding } from "../session";
-import { coverageOf } from "../model/row";
+import { data, frames, seenBlades, surface, visitsOfFinding } from "../session";
 import { reviewOf } from "../review";
 import { Ask, Exports, ReviewBar, Said } from "./Reviewing";
 import { blade, detection, finding, go, place, playVisit, selectFrame, units } from "../state";
@@ -23,14 +22,13 @@ export function Detail(): JSX.Element {
 
 /** With nothing selected: of each blade what was not seen, since a place without a finding may just not have been looked at. */
 function Coverage(): JSX.Element {
-  const blades = coverageOf(data.row);
   return (
     <>
       <p class="note">Nothing is selected. Choose a finding, click the surface, or click a box of the frame.</p>
-      {blades.length > 0 && (
+      {seenBlades.length > 0 && (
         <div class="coverage">
           <h3>Not seen by two views</h3>
-          <ul class="reasons">{blades.map(({ blade: own, seen }) => <li key={own}>{percent(1 - seen)} of blade {own}</li>)}</ul>
+          <ul class="reasons">{seenBlades.map(({ name, seen }) => <li key={name}>{percent(1 - seen)} of blade {name}</li>)}</ul>
           <p class="note">Of the reconstructed surface, at a usable angle. What no view saw has no surface and is not counted.</p>
         </div>
       )}
@@ -42,6 +40,7 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
   const review = reviewOf(one.id);
   const unit = one.length_unit ?? one.size_unit ?? data.model.unit;
   const visits = visitsOfFinding.get(one.id) ?? [];
+  const own = seenBlades.find(({ name }) => name === String(one.blade))?.number;
   return (
     <>
       <h2><LabelMark label={one.label} /> {findingName(one.id)} <bdi>{one.label}</bdi>{review.label && <span class="human"> → <bdi>{review.label}</bdi></span>}</h2>
@@ -54,8 +53,8 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
         {one.depth !== undefined && one.depth !== null && <Fact name="Depth">{measured(one.depth, one.depth_sigma, unit, units.value)}</Fact>}
         <Fact name="Blade">
           {bladeText(one.blade)}{one.side ? `, ${one.side.replaceAll("_", " ")}` : ""}
-          {Number(one.blade) > 0 && surface?.mesh.blade.some((each) => each === Number(one.blade)) && (
-            <button type="button" class="link" onClick={() => go({ b: blade.value === null ? Number(one.blade) : null }, true)}>{blade.value === null ? "show it alone" : "show all"}</button>
+          {own !== undefined && surface?.mesh.blade.some((each) => each === own) && (
+            <button type="button" class="link" onClick={() => go({ b: blade.value === null ? own : null }, true)}>{blade.value === null ? "show it alone" : "show all"}</button>
           )}
         </Fact>
         {one.span !== undefined && <Fact name="Span, chord">{share(one.span, one.span_sigma)}, {share(one.chord, one.chord_sigma)}</Fact>}

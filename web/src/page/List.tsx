@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { TABS, type Tab } from "../model/hash";
 import { SORTS, type SortKey } from "../model/sorting";
 import { bladeText, certainty, findingName, measured, percent, reasonText, seconds } from "../model/words";
-import { data, detectionsOfFrame, order, visitsOfFinding } from "../session";
+import { data, detectionsOfFrame, order, seenBlades, visitsOfFinding } from "../session";
 import {
   allFindings, blade, descending, detection, filters, finding, frame, go, onlyUnplaced, place, reviewState, selectDetection, selectFinding,
   selectFrame, setTab, shownFindings, sort, tab, units,
@@ -212,5 +212,6 @@ function Detections(): JSX.Element {
 /** Says that one blade stands alone, and ends it. */
 export function BladeAlone(): JSX.Element | null {
   if (blade.value === null) return null;
-  return <button type="button" onClick={() => go({ b: null }, true)}>Only blade {blade.value} is shown: show all</button>;
+  const name = seenBlades.find(({ number }) => number === blade.value)?.name ?? blade.value;
+  return <button type="button" onClick={() => go({ b: null }, true)}>Only blade {name} is shown: show all</button>;
 }

@@ -9,6 +9,8 @@ import { allFindings, finding, measured, place, selectFinding } from "../state";
 
 const buttons = new Map<number, HTMLButtonElement>();
 const SVG = "http://www.w3.org/2000/svg";
+/** Radius of the compass, length of its arrows, and half of what a letter on it takes, in pixels. */
+const [DIAL, ARROW, LETTER] = [46, 14, 3.4];
 
 /** @param hide whether to find out what the surface hides: rays are cast only when the view rests */
 export function drawMarks(view: View3D, labels: HTMLDivElement, lines: SVGSVGElement, hide: boolean): void {
@@ -56,31 +58,40 @@ function makeButton(id: number, label: string, parent: HTMLElement): HTMLButtonE
 
 /** Arrows for the pictures' up, and for root and tip when the row is known. */
 function compass(view: View3D, height: number): SVGElement[] {
-  const [x, y] = [42, height - 42];
+  const [x, y] = [DIAL + 8, height - DIAL - 8];
   const arrows: [string, Vec3][] = [];
   if (data.up) arrows.push(["up", data.up]);
   const row = visibleRow(data.row, view.surface.center);
   if (row) arrows.push(["tip", row.tip], ["root", [-row.tip[0], -row.tip[1], -row.tip[2]]]);
   if (!arrows.length) return [];
-  const words: { readonly text: SVGElement; readonly dx: number; readonly dy: number }[] = [];
+  const words: { text: string; readonly dx: number; readonly dy: number }[] = [];
   const heads = arrows.map(([name, d]) => {
     const [right, up] = view.onScreen(d);
-    const [dx, dy] = [17 * right, -17 * up];
+    const [dx, dy] = [ARROW * right, -ARROW * up];
     const beside = words.find((word) => Math.hypot(word.dx - dx, word.dy - dy) < 12); // they would lie on each other
-    if (beside) beside.text.textContent += `, ${name}`;
-    else {
-      const text = document.createElementNS(SVG, "text");
-      const flat = Math.hypot(dx, dy) || 1;
-      text.setAttribute("x", String(x + dx + (9 * dx) / flat));
-      text.setAttribute("y", String(y + dy + (8 * dy) / flat + 4));
-      text.setAttribute("class", "way");
-      text.textContent = name;
-      words.push({ text, dx, dy });
-    }
+    if (beside) beside.text += `, ${name}`;
+    else words.push({ text: name, dx, dy });
     return path(`M${x} ${y}l${dx} ${dy}m${-0.3 * dx - 0.2 * dy} ${-0.3 * dy + 0.2 * dx}l${0.3 * dx + 0.2 * dy} ${0.3 * dy - 0.2 * dx}l${-0.3 * dx + 0.2 * dy} ${-0.3 * dy - 0.2 * dx}`, "way");
   });
-  const drawn = [...heads, ...words.map((word) => word.text)];
-  return [path(`M${x - 33} ${y}a33 33 0 1 0 66 0a33 33 0 1 0-66 0`, "dial"), ...drawn];
+  const drawn = [...heads, ...words.map((word) => wordAt(x, y, word.dx, word.dy, word.text))];
+  return [path(`M${x - DIAL} ${y}a${DIAL} ${DIAL} 0 1 0 ${2 * DIAL} 0a${DIAL} ${DIAL} 0 1 0-${2 * DIAL} 0`, "dial"), ...drawn];
+}
+
+/** A word beyond the head of an arrow from the middle of the dial; nearer where it would reach over the edge. */
+function wordAt(x: number, y: number, dx: number, dy: number, words: string): SVGElement {
+  const flat = Math.hypot(dx, dy) || 1;
+  const [right, down] = [dx / flat, dy / flat];
+  const [half, high] = [LETTER * words.length, 6.5]; // of the box around the word
+  // The far corner of a box whose middle lies r out is hypot(r |right| + half, r |down| + high) from that of the dial.
+  const reach = Math.abs(right) * half + Math.abs(down) * high;
+  const free = Math.sqrt(Math.max(0, reach ** 2 + (DIAL - 2) ** 2 - half ** 2 - high ** 2)) - reach;
+  const out = Math.max(0, Math.min(flat + 2 + reach, free));
+  const text = document.createElementNS(SVG, "text");
+  text.setAttribute("x", String(x + out * right));
+  text.setAttribute("y", String(y + out * down + 4));
+  text.setAttribute("class", "way");
+  text.textContent = words;
+  return text;
 }
 
 function path(d: string, name: string): SVGPathElement {

@@ -59,6 +59,7 @@ function OfFinding({ one }: { readonly one: Finding }): JSX.Element {
         </Fact>
         {one.span !== undefined && <Fact name="Span, chord">{share(one.span, one.span_sigma)}, {share(one.chord, one.chord_sigma)}</Fact>}
         {one.root_distance !== undefined && one.root_distance !== null && <Fact name="From the root">{measured(one.root_distance, one.root_distance_sigma, unit, units.value)}</Fact>}
+        {one.edge_distance !== undefined && one.edge_distance !== null && <Fact name="From an edge">{measured(one.edge_distance, one.edge_distance_sigma, unit, units.value)}</Fact>}
         {one.limits && <Fact name="Limits of the shop"><b>{one.limits.verdict.replaceAll("_", " ")}</b>: {one.limits.reason}. What it means for the part a person says.</Fact>}
         <Fact name="Persistence">detected in {one.persistence.k} of the {one.persistence.n} frames that could show it</Fact>
         <Fact name="Place">{one.centroid.every(Number.isFinite) ? one.centroid.map((value) => value.toFixed(3)).join(", ") : "none on the surface"}{one.centroid_sigma ? ` ± ${one.centroid_sigma.toPrecision(2)}` : ""}</Fact>

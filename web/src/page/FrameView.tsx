@@ -184,6 +184,7 @@ function Drawn({ width }: { readonly width: number }): JSX.Element | null {
       {boxes.value !== "off" && (detectionsOfFrame.get(one.index) ?? []).map((own) => {
         const mark = marks.get(own.label);
         const [x0, y0, x1, y1] = own.box;
+        const atRight = x1 > 0.8 * size.width;
         const strong = own.defect !== null && own.defect === chosen || own.id === detection.value?.id;
         const style = { stroke: mark?.css ?? "gray", fill: boxes.value === "filled" ? (mark?.css ?? "gray") : "none" };
         const dash = own.state === "mapped" ? "none" : `${5 * unit} ${4 * unit}`;
@@ -194,7 +195,7 @@ function Drawn({ width }: { readonly width: number }): JSX.Element | null {
           <g key={own.id}>
             {shape({ fill: "none", stroke: "#000", "stroke-opacity": 0.6, "stroke-width": (strong ? 5 : 3.4) * unit }, "halo")}
             {shape({ ...style, "fill-opacity": 0.3, "stroke-width": (strong ? 3 : 1.6) * unit, "stroke-dasharray": dash }, strong ? "box strong" : "box")}
-            <text x={x0} y={Math.max(14 * unit, y0 - 5 * unit)} font-size={12.5 * unit} stroke-width={3 * unit} class="name">{own.defect !== null ? `${findingName(own.defect)} ` : ""}{own.label}</text>
+            <text x={atRight ? x1 : x0} text-anchor={atRight ? "end" : "start"} y={Math.max(14 * unit, y0 - 5 * unit)} font-size={12.5 * unit} stroke-width={3 * unit} class="name">{own.defect !== null ? `${findingName(own.defect)} ` : ""}{own.label}</text>
           </g>
         );
       })}

@@ -12,6 +12,8 @@ const width = signal(800);
 const LEFT = 124;
 const ROW = 18;
 const TOP = 46;
+/** Pixels that the words of a time take. */
+const SCALE_WIDTH = 36;
 const end = Math.max(videoStart[videoStart.length - 1] ?? 0, 0.001);
 const x = (video: number, time_s: number): number => LEFT + (((videoStart[video] ?? 0) + time_s) / end) * (width.value - LEFT - 12);
 
@@ -130,7 +132,8 @@ function Ticks({ height }: { readonly height: number }): JSX.Element {
     if (video) marksAt.push(<path key={`v${video}`} class="border" d={`M${x(video, 0)} 0V${height}`} />);
     for (let time = 0; time <= own + 1e-6; time += step) {
       const left = x(video, time);
-      marksAt.push(<g key={`${video}-${time}`}><path class="grid" d={`M${left} 14V${height}`} /><text class="scale" x={left + 2} y="12">{data.videos.length > 1 && time === 0 ? `video ${video}` : `${Number(time.toFixed(1))} s`}</text></g>);
+      const late = left > width.value - SCALE_WIDTH;
+      marksAt.push(<g key={`${video}-${time}`}><path class="grid" d={`M${left} 14V${height}`} /><text class="scale" x={late ? left - 2 : left + 2} y="12" text-anchor={late ? "end" : "start"}>{data.videos.length > 1 && time === 0 ? `video ${video}` : `${Number(time.toFixed(1))} s`}</text></g>);
     }
   }
   return <>{marksAt}</>;

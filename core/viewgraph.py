@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TypedDict
@@ -23,6 +25,10 @@ _PAIRS = "pairs.npz"
 _GRAPH = "graph.npz"
 _DATABASE = "database.db"
 _DROPPED = "dropped.json"
+
+OPENING_S = 30.0
+"""For so long opening a database is tried; what locks it takes milliseconds."""
+OPENING_EVERY_S = 0.02
 
 
 @dataclass(frozen=True)
@@ -133,6 +139,29 @@ def read_graph(folder: Path) -> PairTable:
 def database_of(folder: Path) -> Path:
     """COLMAP's database of all frames and verified pairs, in the result of stage `graph`."""
     return folder / _DATABASE
+
+
+@contextmanager
+def open_database(path: Path) -> Iterator[pycolmap.Database]:
+    """Open what `write_database` wrote, to read it.
+
+    Tasks of several processes read the same file. SQLite locks it for a moment where its last reader closes it, and
+    COLMAP does not wait for that, so opening is tried for `OPENING_S`.
+
+    Raises:
+        StageFailed: it cannot be opened.
+    """
+    deadline = time.monotonic() + OPENING_S
+    while True:
+        try:
+            database = pycolmap.Database.open(path)
+            break
+        except RuntimeError as error:
+            if time.monotonic() > deadline:
+                raise StageFailed(f"COLMAP's database cannot be opened: {error}", where=path.name) from error
+            time.sleep(OPENING_EVERY_S)
+    with database:
+        yield database
 
 
 def write_dropped(folder: Path, pairs: NDArray[np.int32]) -> None:

@@ -9,7 +9,6 @@ from typing import Any
 
 import cv2  # noqa: F401  (before pycolmap: the other order aborts in PNG writing)
 import numpy as np
-import pycolmap
 from numpy.typing import NDArray
 
 from core.dense.cameras import Pinhole
@@ -27,7 +26,7 @@ from core.scene.frame import Crop, index_of_image
 from core.scene.views import Views
 from core.surface.ply import read_mesh
 from core.surface.support import point_spacing
-from core.viewgraph import database_of, read_graph
+from core.viewgraph import database_of, open_database, read_graph
 
 F64 = NDArray[np.float64]
 
@@ -142,7 +141,7 @@ def matches_of_graph(graph: Path, views: Views) -> Matches:
 def _keypoints(database_path: Path) -> Callable[[int], F64]:
     @lru_cache(maxsize=16)
     def of(index: int) -> F64:
-        with pycolmap.Database.open(database_path) as database:
+        with open_database(database_path) as database:
             values: Any = database.read_keypoints(index + 1)
         return np.asarray(values, np.float64)[:, :2]
 

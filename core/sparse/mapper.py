@@ -16,6 +16,7 @@ import pycolmap
 
 from core.checks.stats import model_stats
 from core.settings.groups import MapperSettings
+from core.viewgraph import open_database
 
 Progress = Callable[[int, int], None]
 """Called with (registered images, images offered); may raise to stop the mapping."""
@@ -38,7 +39,7 @@ def open_cache(database: Path, names: Iterable[str] = (), min_num_matches: int =
     options = pycolmap.DatabaseCacheOptions()
     options.min_num_matches = min_num_matches
     options.image_names = set(names)
-    with pycolmap.Database.open(database) as source:
+    with open_database(database) as source:
         return pycolmap.DatabaseCache.create(source, options)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pycolmap
 
-from core.viewgraph import PairTable
+from core.viewgraph import PairTable, open_database
 
 
 def within(table: PairTable, start: int, end: int) -> PairTable:
@@ -44,7 +44,7 @@ class Frames:
 
 def read_frames(database: Path, start: int, end: int) -> Frames:
     """Frames [start, end) of the database of stage `graph`."""
-    with pycolmap.Database.open(database) as source:
+    with open_database(database) as source:
         images = sorted(source.read_all_images(), key=lambda image: int(image.image_id))
         images = [image for image in images if start <= image.image_id - 1 < end]
         keypoints = tuple(source.read_keypoints(image.image_id)[:, :2].astype(np.float64) for image in images)

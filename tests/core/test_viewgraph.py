@@ -1,11 +1,17 @@
 from __future__ import annotations
 
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pycolmap
 import pytest
 
+from core import viewgraph
 from core.errors import StageFailed
 from core.matched_pair import MatchedPair
 from core.settings import make_settings
@@ -15,6 +21,7 @@ from core.viewgraph import (
     graph_counts,
     join_tables,
     make_table,
+    open_database,
     read_table,
     table_counts,
     write_database,
@@ -117,3 +124,57 @@ def test_the_database_has_the_same_bytes(scene: tuple[list[np.ndarray], list[Pai
         write_database(tmp_path / name, fisheye(), keypoints, join_tables(tables))
     assert (tmp_path / "a.db").read_bytes() == (tmp_path / "b.db").read_bytes()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.db", "b.db"]
+
+
+LOCKING = """
+import sqlite3, sys
+other = sqlite3.connect(sys.argv[1], isolation_level=None)
+other.execute("PRAGMA journal_mode=DELETE")
+other.execute("BEGIN EXCLUSIVE")
+print("locked", flush=True)
+sys.stdin.read()
+"""
+"""A process that keeps all others out of a database until its input ends, as the last reader does while it closes."""
+
+
+@pytest.fixture
+def locked(
+    scene: tuple[list[np.ndarray], list[PairTable]], tmp_path: Path
+) -> Iterator[tuple[Path, subprocess.Popen[str]]]:
+    """A database, and the process that locks it."""
+    path = tmp_path / "database.db"
+    keypoints, tables = scene
+    write_database(path, fisheye(), keypoints, join_tables(tables))
+    command = [sys.executable, "-c", LOCKING, str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "locked\n"
+        with pytest.raises(RuntimeError), pycolmap.Database.open(path):
+            pass
+        yield path, other
+        other.kill()
+
+
+def test_a_database_that_another_reader_locks_is_waited_for(locked: tuple[Path, subprocess.Popen[str]]) -> None:
+    path, other = locked
+
+    def close() -> None:
+        time.sleep(0.3)
+        assert other.stdin is not None
+        other.stdin.close()
+
+    closing = threading.Thread(target=close)
+    closing.start()
+    with open_database(path) as database:
+        assert database.num_images() == N_VIEWS
+    closing.join()
+
+
+def test_a_database_that_stays_locked_is_told(
+    locked: tuple[Path, subprocess.Popen[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, _ = locked
+    monkeypatch.setattr(viewgraph, "OPENING_S", 0.1)
+    with pytest.raises(StageFailed, match="cannot be opened") as failed, open_database(path):
+        pass
+    assert failed.value.where == "database.db"

@@ -184,7 +184,7 @@ function Drawn({ width }: { readonly width: number }): JSX.Element | null {
       {boxes.value !== "off" && (detectionsOfFrame.get(one.index) ?? []).map((own) => {
         const mark = marks.get(own.label);
         const [x0, y0, x1, y1] = own.box;
-        const atRight = x1 > 0.8 * size.width;
+        const atRight = x0 > 0.7 * size.width;
         const strong = own.defect !== null && own.defect === chosen || own.id === detection.value?.id;
         const style = { stroke: mark?.css ?? "gray", fill: boxes.value === "filled" ? (mark?.css ?? "gray") : "none" };
         const dash = own.state === "mapped" ? "none" : `${5 * unit} ${4 * unit}`;

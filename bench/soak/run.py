@@ -29,6 +29,7 @@ from bench.soak.servers import PostgresServer, RedisServer
 from core.states import AttemptOutcome, InspectionState, TaskState
 from store.db import Database
 from store.models import Artifact, Attempt, FurtherVideo, Inspection, Result, Task
+from store.publishing import uncompressed_key
 from worker.results import MANIFEST
 
 _TRANSFERS = 2
@@ -215,12 +216,13 @@ def attempts(database: Database) -> dict[str, int]:
 def orphans(database: Database, data: Path) -> list[str]:
     """Files of the store that nothing names, once the cleaner had time to remove them."""
     deadline = time.monotonic() + _CLEANING_S
-    while (found := _unknown(database, data / "artifacts")) and time.monotonic() < deadline:
+    while (found := unknown_files(database, data / "artifacts")) and time.monotonic() < deadline:
         time.sleep(1.0)
     return found
 
 
-def _unknown(database: Database, store: Path) -> list[str]:
+def unknown_files(database: Database, store: Path) -> list[str]:
+    """Files of a store that nothing in the database names, and results that it names and the store lacks."""
     with database.read() as session:
         known = set(session.scalars(select(Artifact.key)))
         inputs = {
@@ -236,6 +238,6 @@ def _unknown(database: Database, store: Path) -> list[str]:
     for path in sorted(path for path in store.rglob("*") if path.is_file()):
         name = path.relative_to(store).as_posix()
         parents = {parent.relative_to(store).as_posix() for parent in path.parents if parent.is_relative_to(store)}
-        if name not in known | inputs and not parents & (logs | results):
+        if uncompressed_key(name) not in known | inputs and not parents & (logs | results):
             unknown.append(name)
     return unknown + [name for name in sorted(results) if not (store / name / MANIFEST).is_file()]

@@ -12,6 +12,8 @@ import pytest
 from plyfile import PlyData, PlyElement
 
 from bench.soak.compare import differences
+from bench.soak.run import unknown_files
+from tests.api.conftest import Backend, backend  # noqa: F401  (a fixture)
 
 CASES = [{"name": "seg_000", "status": "succeeded", "points3D": 100, "seconds": 1.0}]
 DETECTIONS: list[dict[str, Any]] = [
@@ -70,3 +72,17 @@ def test_an_outcome_or_a_place_that_appears_is_a_difference(pair: tuple[Path, Pa
     assert differences(*pair) == ["mapping/detections.json differs"]
     path.write_text(json.dumps([DETECTIONS[0], {**DETECTIONS[1], "x": 0.0, "y": 0.0, "z": 0.0}]))
     assert "inf apart" in differences(*pair)[0]
+
+
+def test_a_file_that_nothing_names_is_found_and_the_gzipped_form_of_a_page_is_none(
+    backend: Backend,  # noqa: F811
+) -> None:
+    one = backend.finished("one", {"viewer/data.js": b"data"})
+    store = backend.services.settings.folder("artifacts")
+    page = store / "published" / one / "viewer"
+    (page / "data.js.gz").write_bytes(b"packed")
+    assert [name for name in unknown_files(backend.db, store) if "viewer" in name] == []
+    (page / "other.js.gz").write_bytes(b"packed")
+    (page / "other.js").write_bytes(b"nobody's")
+    names = [f"published/{one}/viewer/{name}" for name in ("other.js", "other.js.gz")]
+    assert [name for name in unknown_files(backend.db, store) if "viewer" in name] == names

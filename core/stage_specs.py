@@ -244,7 +244,7 @@ STAGES: dict[str, StageSpec] = {
             "timeline",
             "scale",
             *_options("row", "radius_mm", "radius_sigma_mm", "radius_at"),
-            version=11,
+            version=12,
             weight=7.7,
         ),
         _spec("gallery", GalleryProduct, "gallery", "mapping.method", version=7, reads_video=True, weight=29),

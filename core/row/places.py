@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from core.json_files import JsonObject
 from core.mapping.surface import Surface
@@ -29,6 +30,8 @@ EDGE_COSINE = 2.0 * FACING
 """Cosine between the normal of a place and that of the sheet, below which it looks along the chord."""
 ON_SHEET = 0.25
 """Of a pitch: a place nearer to the middle of a blade is the blade's, whichever way its surface looks."""
+LEAST_MEAN = 0.3
+"""Length of the mean of unit normals: those of less look apart too much to have a mean."""
 _DIGITS = 6
 _EDGES = {EdgeName.LEADING: Side.LEADING_EDGE, EdgeName.TRAILING: Side.TRAILING_EDGE, EdgeName.UNKNOWN: Side.EDGE}
 
@@ -151,12 +154,31 @@ def _side(row: BladeRow, cosine: float, chord: float, edges: dict[str, tuple[flo
     return row.section.sides[1 if cosine > 0 else -1]
 
 
-def normals_at(mesh: Mesh, places: F64) -> F64:
-    """(n, 3) unit normals of a mesh at its points nearest to (n, 3) places, the mean over the corners of the face."""
+def normals_at(mesh: Mesh, places: F64, reach: float = 0.0) -> F64:
+    """(n, 3) unit normals of a mesh at its points nearest to (n, 3) places.
+
+    Args:
+        mesh: with faces.
+        places: in its frame.
+        reach: they are the mean of those of all vertices within so far of a place, where there are some and they do not
+            look apart; with 0 they are the mean over the corners of the nearest face. The wall of a dent looks
+            anywhere, and the blade about it does not.
+    """
     if not len(places):
         return np.zeros((0, 3))
     _, face = Surface(mesh.vertices, mesh.faces).nearest(places)
-    return unit_rows(vertex_normals(mesh)[mesh.faces[face]].sum(axis=1))
+    of_vertex = vertex_normals(mesh)
+    found = unit_rows(of_vertex[mesh.faces[face]].sum(axis=1))
+    if reach <= 0:
+        return found
+    tree = cKDTree(mesh.vertices)
+    for k, place in enumerate(places):
+        near = np.asarray(tree.query_ball_point(place, reach), np.int64)
+        mean = of_vertex[near].sum(axis=0) / max(len(near), 1)
+        length = float(np.linalg.norm(mean))
+        if length > LEAST_MEAN:
+            found[k] = mean / length
+    return found
 
 
 def blades_of_vertices(row: BladeRow, mesh: Mesh) -> I32:

@@ -22,6 +22,8 @@ from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
 
+REACH_SPACINGS = 0.5
+"""Of the spacing of the points that the row was found from: 0.6 mm on the inspection of 360 frames."""
 TOLD_SHARE = 0.01
 """Standard deviation of a radius that is told without one, as a share of it."""
 RADIUS_SHARE = 0.015
@@ -43,6 +45,11 @@ class RowOfModel:
     """Of a further model: how it lies on the row of the first (`core.row.on_first`)."""
 
     @property
+    def _reach(self) -> float:
+        """About a place, where its surface is asked which way it looks."""
+        return REACH_SPACINGS * self.row.radius_sigma
+
+    @property
     def unit(self) -> LengthUnit:
         """Of the lengths in its columns."""
         return MODEL_UNIT if self.scale is None else LengthUnit.MM
@@ -60,7 +67,7 @@ class RowOfModel:
         """
         own = [row for row in rows if row.x is not None and row.model in (None, self.model)]
         places = np.array([(row.x, row.y, row.z) for row in own], np.float64).reshape(-1, 3)
-        normals = self._seen(own, places, normals_at(self.mesh, places))
+        normals = self._seen(own, places, normals_at(self.mesh, places, self._reach))
         found = on_row(self.row, places, normals, [sigmas.get(row.id) for row in own])
         by_id = {row.id: place.scaled(self.scale) for row, place in zip(own, found, strict=True)}
         return [self._with(row, by_id[row.id]) if row.id in by_id else row for row in rows]
@@ -80,7 +87,7 @@ class RowOfModel:
     def records(self, records: Sequence[DefectRecord]) -> tuple[list[DefectRecord], list[JsonObject]]:
         """The records of this model with their blade and where on it they lie, and the same as findings of the row."""
         places = np.array([record.centroid for record in records], np.float64).reshape(-1, 3)
-        normals = normals_at(self.mesh, places)
+        normals = normals_at(self.mesh, places, self._reach)
         for k, record in enumerate(records):
             if record.normal is not None:
                 normals[k] = record.normal

@@ -248,3 +248,28 @@ def test_two_blades_are_too_few_though_they_fit_each_other() -> None:
     assert found.reason == UnknownRow.TOO_FEW_BLADES
     assert found.contrast is not None
     assert found.contrast > MIN_CONTRAST
+
+
+def test_which_way_a_place_looks_is_asked_of_what_lies_about_it() -> None:
+    """A rough patch: its faces look anywhere, the surface about it up."""
+    side = np.linspace(-1.0, 1.0, 41)
+    x, y = np.meshgrid(side, side)
+    rng = np.random.default_rng(0)
+    z = np.where(np.hypot(x, y) < 0.2, rng.normal(scale=0.1, size=x.shape), 0.0)
+    corner = (np.arange(40)[:, None] * 41 + np.arange(40)).ravel()
+    faces = np.concatenate(
+        [np.stack([corner, corner + 1, corner + 41], 1), np.stack([corner + 1, corner + 42, corner + 41], 1)]
+    )
+    mesh = Mesh(np.stack([x, y, z], -1).reshape(-1, 3), faces.astype(np.int32))
+    places = np.column_stack([rng.uniform(-0.1, 0.1, (20, 2)), np.zeros(20)])
+    alone, about = normals_at(mesh, places), normals_at(mesh, places, 0.3)
+    assert np.linalg.norm(about, axis=1) == pytest.approx(np.ones(20))
+    assert about[:, 2].min() > 0.9
+    assert alone[:, 2].min() < 0.7
+    assert np.array_equal(normals_at(mesh, places, 1e-6), alone), "no vertex is so near"
+    back = Mesh(
+        np.concatenate([mesh.vertices, mesh.vertices - (0, 0, 0.01)]),
+        np.concatenate([faces, faces[:, ::-1] + 41 * 41]).astype(np.int32),
+    )
+    thin = normals_at(back, places, 0.3)
+    assert np.array_equal(thin, normals_at(back, places)), "both sides of a thin blade have no mean"

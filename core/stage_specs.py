@@ -233,7 +233,7 @@ STAGES: dict[str, StageSpec] = {
             BladesProduct,
             *_options("row", "count", "zero_blade", "direction", "edge_a", "same_blade"),
             "seed",
-            version=7,
+            version=8,
             weight=1,
         ),
         _spec("map_defects", PlacesProduct, "mapping", version=11, weight=0.6),

@@ -15,7 +15,7 @@ from core.row.fit import best_contrast, refined
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast, overlap, sides
 from core.row.passing import leap_within, turn_of_camera
-from core.row.regular import MAX_OFF_PITCHES, Differences, differences
+from core.row.regular import Differences, differences
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.section import section_of
 from core.row.seeds import seeds
@@ -152,7 +152,7 @@ def told_apart(fine: SurfaceSample, row: Hypothesis) -> Apart | NoRow:
     if len(found.blades) < LEAST_BLADES:
         return NoRow(UnknownRow.TOO_FEW_BLADES, value)
     worst = found.worst
-    if worst is not None and worst.off_pitches > MAX_OFF_PITCHES:
+    if worst is not None and worst.over > 1:
         return NoRow(UnknownRow.PITCH_NOT_CONSTANT, value, worst)
     # After that: blades half a pitch off fill the troughs.
     if second < max(MIN_SECOND, SECOND_TO_TROUGH * min(trough, after)):

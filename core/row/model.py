@@ -13,7 +13,7 @@ from core.flags import Flag, Severity
 from core.json_files import JsonObject
 from core.row.blades import Sheet
 from core.row.passing import LEAST_LEAP, Leap
-from core.row.regular import MAX_OFF_PITCHES, Irregularity
+from core.row.regular import Irregularity
 from core.row.section import Section
 from core.row.turn import Axis
 
@@ -211,7 +211,7 @@ class NoRow:
         """What a reader of the result must know: a surface that ought to be a row, and is none."""
         if self.irregular is not None:
             off, where = self.irregular.off_pitches, self.irregular.where
-            return [Flag("row_irregular", Severity.WARNING, off, MAX_OFF_PITCHES, where)]
+            return [Flag("row_irregular", Severity.WARNING, off, self.irregular.limit, where)]
         if self.leap is not None:
             leapt = abs(self.leap.pitches)
             return [Flag("row_irregular", Severity.WARNING, leapt, LEAST_LEAP, self.leap.where)]

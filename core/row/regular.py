@@ -26,6 +26,11 @@ MAX_OFF_PITCHES = 0.07
 """True surfaces have 0.001, with waves of 0.3 to 1 mm on them 0.01 to 0.05, and up to 0.06 between blades of 13 or 16
 that are half seen; the reconstructed surface of three blades has 0.001. Two groups of blades that are joined 0.2
 pitches, 5 mm along the axis, 8 mm along the radius, 5 degrees or a tenth of their size off have 0.09 and more."""
+END_OFF_PITCHES = 0.14
+"""The same beside the first or the last blade, of which the view shows a part, aslant, where `ENDS_OF` were seen: of
+right models one has 0.073 and one 0.067 there, and 0.02 between all others. A part that was joined wrongly has more
+blades than one."""
+ENDS_OF = 6
 CANDIDATES = 8
 """Nearest points that are asked for one facing the same way: the two sides of a thin blade lie close together."""
 MIN_COSINE = 0.7
@@ -54,6 +59,17 @@ class Irregularity:
     """Number of blades that were seen."""
 
     @property
+    def limit(self) -> float:
+        """What it may be of a right model, in pitches."""
+        of_end = self.seen >= ENDS_OF and not {1, self.seen}.isdisjoint(self.blades)
+        return END_OFF_PITCHES if of_end else MAX_OFF_PITCHES
+
+    @property
+    def over(self) -> float:
+        """Of the limit: above 1 the model is no row."""
+        return self.off_pitches / self.limit
+
+    @property
     def where(self) -> str:
         """For people."""
         one, other = self.blades
@@ -72,7 +88,7 @@ class Differences:
 
     @property
     def worst(self) -> Irregularity | None:
-        """The two blades that lie on each other worst; None where no two show the same places.
+        """The two blades that lie on each other worst, by their limit; None where no two show the same places.
 
         Of every blade the second worst pair counts, where it has two: one that lies wrong does so beside all others,
         and two that share little, far apart and both half seen, may be turned against each other by their edges alone.
@@ -85,7 +101,7 @@ class Differences:
                 of_blade.setdefault(blade, []).append(found)
         off_pitches = attrgetter("off_pitches")
         told = [nlargest(2, pairs, key=off_pitches)[-1] for pairs in of_blade.values()]
-        return max(told, key=off_pitches, default=None)
+        return max(told, key=attrgetter("over"), default=None)
 
     @property
     def steps(self) -> F64:

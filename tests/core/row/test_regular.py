@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from core.row.files import read_blades, write_blades
 from core.row.fit import refined
 from core.row.model import NoRow, UnknownRow
 from core.row.overlap import Hypothesis
-from core.row.regular import MAX_OFF_PITCHES, Differences, differences
+from core.row.regular import END_OFF_PITCHES, ENDS_OF, MAX_OFF_PITCHES, Differences, differences
 from core.row.sample import SurfaceSample, sample_surface, thinned
 from core.row.turn import Axis
 from core.surface.ply import Mesh
@@ -111,6 +112,34 @@ def test_one_pair_alone_does_not_make_a_model_irregular() -> None:
     only = Differences(np.arange(2), {(0, 1): wrong}).worst
     assert only is not None
     assert only.off_pitches == pytest.approx(0.3)
+
+
+def one_blade_off(count: int, blade: int, off: float) -> Differences:
+    """Blades that lie on each other, but for one that lies beside all others."""
+    pairs = combinations(range(count), 2)
+    return Differences(np.arange(count), {pair: np.full(5, off if blade in pair else 0.005) for pair in pairs})
+
+
+@pytest.mark.parametrize(
+    ("count", "blade", "off", "irregular"),
+    [
+        (6, 5, 0.1, False),
+        (6, 0, 0.1, False),
+        (6, 5, 0.2, True),
+        (6, 3, 0.1, True),
+        (5, 4, 0.1, True),
+    ],
+    ids=["last", "first", "last and far off", "not an end", "an end of few"],
+)
+def test_a_blade_at_the_end_of_the_view_may_lie_off_by_more(
+    count: int, blade: int, off: float, irregular: bool
+) -> None:
+    worst = one_blade_off(count, blade, off).worst
+    assert worst is not None
+    assert blade + 1 in worst.blades
+    assert (worst.over > 1) == irregular
+    (flag,) = NoRow(UnknownRow.PITCH_NOT_CONSTANT, 0.4, worst).flags
+    assert flag.threshold == (END_OFF_PITCHES if count >= ENDS_OF and blade in (0, count - 1) else MAX_OFF_PITCHES)
 
 
 def test_the_worst_pair_tells_by_how_much(tmp_path: Path) -> None:

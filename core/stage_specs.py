@@ -192,7 +192,7 @@ STAGES: dict[str, StageSpec] = {
             *_options("model", "trim_tracks", "radial_terms", "loss_scale_px", "refine_principal_point"),
             "seed",
             "compute.threads",
-            version=13,
+            version=14,
             weight=63,
             per_frame=True,
         ),

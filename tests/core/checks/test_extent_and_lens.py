@@ -69,6 +69,8 @@ def test_a_focal_length_that_moves_with_the_choice_of_tracks_is_flagged() -> Non
 def test_a_focal_length_that_left_what_a_span_said_is_flagged() -> None:
     assert check_left(520.0, []) is None
     assert check_left(520.0, [600.0, 460.0]) is None
+    assert check_left(298.7, [253.3, 276.4]) is None, "right, though its clip has hardly any texture to say so"
+    assert raised(check_left(280.0, [404.0])).code == "lens_unsettled"
     flag = raised(check_left(802.0, [790.0, 444.0]))
     assert flag.code == "lens_unsettled"
     assert flag.value == pytest.approx(802 / 444 - 1)

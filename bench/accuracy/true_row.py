@@ -51,15 +51,21 @@ class TrueRow:
 
     def edge_distances(self, finding: TrueFinding, span: float) -> tuple[float, float]:
         """Along the chord from a finding at a share of the span to the leading and to the trailing edge, mm."""
-        chord = self.chord_mm[0] + (self.chord_mm[1] - self.chord_mm[0]) * span
+        chord = float(self._chord(np.array(span)))
         return finding.chord * chord, (1.0 - finding.chord) * chord
+
+    def _chord(self, span: F64) -> F64:
+        """Length of the chord at shares of the span, mm."""
+        root, tip = self.chord_mm
+        chord: F64 = root + (tip - root) * span
+        return chord
 
     def blade(self, points: F64) -> I64:
         """(n,) the blade whose section is nearest, by the place across its chord."""
         span = self.span(points)
         angle, radius = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
         stagger = np.radians(self.stagger_deg[0] + (self.stagger_deg[1] - self.stagger_deg[0]) * span)
-        chord = self.chord_mm[0] + (self.chord_mm[1] - self.chord_mm[0]) * span
+        chord = self._chord(span)
         # Of the point at this height on the middle of a section that is staggered so.
         tangential = (self.way * BODY * chord + points[:, 2] * np.sin(stagger)) / np.cos(stagger)
         blade: I64 = np.round((angle - tangential / radius) / self.pitch_rad).astype(np.int64)

@@ -110,7 +110,7 @@ class Turn:
     @classmethod
     def of(cls, by_frame: Mapping[int, float], moments_s: Mapping[int, float]) -> Turn:
         """From the turn in each frame, and the moment of each."""
-        order = sorted(by_frame.keys() & moments_s.keys(), key=lambda frame: moments_s[frame])
+        order = _in_time(by_frame, moments_s)
         return cls(np.array([moments_s[frame] for frame in order]), np.array([by_frame[frame] for frame in order]))
 
     def rate(self, before: int | None, after: int | None, window_s: float) -> float | None:
@@ -161,8 +161,8 @@ def offset_between(
     gaps = list(_gaps(*turns))
     if not gaps:
         return NoOffset.NOT_NEXT
-    jumped = [(moments_s[a], moments_s[b]) for a, b in jumps if a in moments_s and b in moments_s]
-    told = [_over(turns, *gap, jumped) for gap in gaps]
+    jumps_s = _moments_of(jumps, moments_s)
+    told = [_over(turns, *gap, jumps_s) for gap in gaps]
     known = [one for one in told if isinstance(one, Offset)]
     if not known:
         return next(one for one in (NoOffset.NOT_STEADY, NoOffset.JUMP, NoOffset.TOO_FAR) if one in told)
@@ -181,17 +181,27 @@ def leap_within(
         moments_s: of the frames, s.
         jumps: neighbouring frames between which the pictures jump: a leap there is not the model's.
     """
-    frames = sorted(by_frame.keys() & moments_s.keys(), key=lambda frame: moments_s[frame])
+    frames = _in_time(by_frame, moments_s)
     whole = Turn.of(by_frame, moments_s)
     cuts = [int(cut) + 1 for cut in np.flatnonzero(np.abs(_unlike(whole)) > LEAST_LEAP)]
     bounds = [0, *cuts, len(frames)]
     parts = [Turn(whole.moments_s[a:b], whole.pitches[a:b]) for a, b in pairwise(bounds)]
-    jumped = [(moments_s[a], moments_s[b]) for a, b in jumps if a in moments_s and b in moments_s]
+    jumps_s = _moments_of(jumps, moments_s)
     for cut, turns in zip(cuts, pairwise(parts), strict=True):
-        told = _over(turns, 0, len(turns[0].moments_s) - 1, 0, jumped)
+        told = _over(turns, 0, len(turns[0].moments_s) - 1, 0, jumps_s)
         if isinstance(told, Offset) and told.pitches:
             return Leap((frames[cut - 1], frames[cut]), -told.pitches)
     return None
+
+
+def _in_time(by_frame: Mapping[int, float], moments_s: Mapping[int, float]) -> list[int]:
+    """The frames of a model whose moments are known, in order of time."""
+    return sorted(by_frame.keys() & moments_s.keys(), key=lambda frame: moments_s[frame])
+
+
+def _moments_of(jumps: Sequence[tuple[int, int]], moments_s: Mapping[int, float]) -> list[tuple[float, float]]:
+    """When the pictures jump, of the jumps between frames whose moments are known."""
+    return [(moments_s[a], moments_s[b]) for a, b in jumps if a in moments_s and b in moments_s]
 
 
 def _unlike(turn: Turn) -> F64:

@@ -25,8 +25,7 @@ PRIOR_VIEWS = 3.0
 CONSISTENT = 0.5
 """Share of depth maps' looks, or of sparse points, on a patch that is there."""
 MIN_ALONE = 0.5
-"""A patch that nothing else speaks for has to lie under most of a detection's pixels. On ten rendered scenes all six
-wrong places were on such patches under less, and not one of 1,290 right ones."""
+"""Without depth maps, the least share of a detection's pixels on a patch that nothing else speaks for."""
 MIN_SPARSE = 0.2
 """Of the sparse points on or before a patch, the least share that lies on it: else something nearer was meant."""
 
@@ -73,25 +72,35 @@ def is_contradicted(candidate: Candidate, visible: int, support: int) -> bool:
     return candidate.depth is None or candidate.depth < CONSISTENT
 
 
-def is_unsupported(candidate: Candidate, support: int) -> bool:
-    """Whether the smaller part of the detection's pixels is all that speaks for it: no view, no depth map, no points.
+def is_unsupported(candidate: Candidate, support: int, maps: bool) -> bool:
+    """Whether the detection's pixels are all that speaks for it: no other view, no depth map and no sparse points.
 
-    That is a sliver of the next blade beside one whose surface is missing.
+    That is the next blade beside one whose surface is missing. Over twenty rendered scenes eleven wrong places were
+    such, under 0.1 to 0.9 of the pixels, and none of 2,500 right ones. Where there are no depth maps at all, most of
+    the pixels are enough.
     """
-    return support == 0 and candidate.patch.share < MIN_ALONE and not is_depth_consistent(candidate)
+    if support or is_depth_consistent(candidate):
+        return False
+    return maps or candidate.patch.share < MIN_ALONE
 
 
-def choose(candidates: Sequence[Candidate], consensus: ViewConsensus) -> dict[int, tuple[int, float]]:
+def choose(
+    candidates: Sequence[Candidate], consensus: ViewConsensus, maps: bool = True
+) -> dict[int, tuple[int, float]]:
     """The best candidate of each detection that has one: its row and by how much it leads (infinite without another).
 
     Those that are contradicted or unsupported do not count.
+
+    Args:
+        candidates: of all detections.
+        consensus: a row for each candidate.
+        maps: whether there are depth maps.
     """
     visible, support = consensus.n_visible, consensus.n_support
     by_detection: dict[int, list[tuple[float, int]]] = {}
     for row, candidate in enumerate(candidates):
-        if is_contradicted(candidate, int(visible[row]), int(support[row])) or is_unsupported(
-            candidate, int(support[row])
-        ):
+        seen, agree = int(visible[row]), int(support[row])
+        if is_contradicted(candidate, seen, agree) or is_unsupported(candidate, agree, maps):
             continue
         value = merit(candidate, int(visible[row]), int(support[row]))
         by_detection.setdefault(candidate.detection, []).append((-value, row))

@@ -136,7 +136,7 @@ def cast_bundles(scene: Scene, bundles: Sequence[RayBundle]) -> list[Cast | Miss
     places = places_nearest(scene.surface, [candidate.place for candidate in candidates])
     candidates = [replace(candidate, place=place) for candidate, place in zip(candidates, places, strict=True)]
     consensus = _ask(scene, bundles, candidates)
-    chosen = choose(candidates, consensus)
+    chosen = choose(candidates, consensus, maps=len(scene.depth.frames) > 0)
     recall = _recall(consensus, [row for row, _ in chosen.values()])
     for detection, (row, lead) in chosen.items():
         bundle, sparse = bundles[detection], boxed[detection]

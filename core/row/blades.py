@@ -1,7 +1,8 @@
 """Blades of a row told apart: the angle of a blade as a function of place, and the blades that are seen.
 
 In cylinder coordinates about the axis a blade is a sheet ``theta = g(z, r) + k p``: g is a quadratic function, one for
-all blades, found by the concentration of the angles left over (the mean resultant length of circular statistics).
+all blades, found by the concentration of the angles left over (the mean resultant length of circular statistics) on
+each of their two sides.
 """
 
 from __future__ import annotations
@@ -70,12 +71,13 @@ def fit_sheet(sample: SurfaceSample, row: Hypothesis) -> Sheet:
     spread = np.maximum(terms.std(axis=0), 1e-12)
     scaled = terms / spread
     phase = angle / row.pitch_rad
-    # One side of the blades alone: with both, a blade's back may be laid onto its neighbour's front.
-    facing = (row.axis.tangential(on_blade.points) * on_blade.normals).sum(axis=1)
-    one_side = facing > 0 if (facing > 0).mean() >= 0.5 else facing < 0
+    # Each side of the blades by itself: together, a blade's back may be laid onto its neighbour's front. Both count: a
+    # wrong lean may lay what many blades show of one side onto each other, and scatters the other side.
+    ahead = (row.axis.tangential(on_blade.points) * on_blade.normals).sum(axis=1) > 0
 
     def off(lean: F64) -> float:
-        return -float(np.abs(np.exp(2j * np.pi * (phase[one_side] - scaled[one_side] @ lean)).mean()))
+        turned = np.exp(2j * np.pi * (phase - scaled @ lean))
+        return -float(np.abs(turned[ahead].sum()) + np.abs(turned[~ahead].sum())) / len(turned)
 
     trials = [np.array([a, b, 0.0, 0.0, 0.0]) for a in SLOPES for b in SLOPES]
     lean = min((_descended(off, first) for first in sorted(trials, key=off)[:STARTS]), key=off)

@@ -16,7 +16,7 @@ from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast, overlap, sides
 from core.row.passing import leap_within, turn_of_camera
 from core.row.regular import Differences, differences
-from core.row.sample import SurfaceSample, sample_surface, thinned
+from core.row.sample import FIT_POINTS, SurfaceSample, sample_surface, steadied, thinned
 from core.row.section import section_of
 from core.row.seeds import seeds
 from core.scene.views import Views
@@ -26,7 +26,6 @@ from core.surface.ply import Mesh
 F64 = NDArray[np.float64]
 
 SEARCH_POINTS = 1500
-FIT_POINTS = 10_000
 MIN_CONTRAST = 0.15
 """True surfaces of one blade and of a hub have 0.00; a noisy draft surface seen from one side has 0.20."""
 WORTH_FITTING = MIN_CONTRAST / 4
@@ -60,8 +59,9 @@ class Apart:
 
 def estimate_row(mesh: Mesh, views: Views, seed: int, told: RowSettings = UNTOLD) -> BladeRow | NoRow:
     """The row of equal blades that a mesh shows: `search_row`, then `describe_row`."""
-    found = search_row(mesh, views, seed)
-    return found if isinstance(found, NoRow) else describe_row(mesh, views, seed, found, told)
+    steady = steadied(mesh, seed)
+    found = _searched(steady, views, seed)
+    return found if isinstance(found, NoRow) else _of_found(mesh, steady, views, seed, found, told)
 
 
 def search_row(mesh: Mesh, views: Views, seed: int) -> Hypothesis | NoRow:
@@ -72,7 +72,11 @@ def search_row(mesh: Mesh, views: Views, seed: int) -> Hypothesis | NoRow:
         views: the model's, in order of time.
         seed: of the points drawn.
     """
-    drawn = sample_surface(mesh, seed)
+    return _searched(steadied(mesh, seed), views, seed)
+
+
+def _searched(steady: Mesh, views: Views, seed: int) -> Hypothesis | NoRow:
+    drawn = sample_surface(steady, seed)
     if not len(drawn):
         return NoRow(UnknownRow.NO_SURFACE)
     if len(views) < LEAST_VIEWS:
@@ -96,14 +100,22 @@ def describe_row(
         found: axis and pitch.
         told: what the user knows; with the number of blades the pitch is exact, and the axis is fitted to it.
     """
-    drawn = sample_surface(mesh, seed)
+    return _of_found(mesh, steadied(mesh, seed), views, seed, found, told)
+
+
+def _of_found(
+    mesh: Mesh, steady: Mesh, views: Views, seed: int, found: Hypothesis, told: RowSettings
+) -> BladeRow | NoRow:
+    """`describe_row`: blades are told apart on the steadied surface, whose edges are drawn in; their ends are not."""
+    smooth = thinned(sample_surface(steady, seed), FIT_POINTS)
+    drawn = sample_surface(mesh, seed, normals_of=steady)
     fine = thinned(drawn, FIT_POINTS)
     # Coverage is a share of the area: a thinned sample has too many points where the surface bends, as at the edges.
     even = drawn.of(np.arange(0, len(drawn), max(1, len(drawn) // SEARCH_POINTS)))
     if told.count is not None:
-        found = refined(fine, Hypothesis(found.axis, 2 * np.pi / told.count), pitch_known=True)
-        found = Hypothesis(found.axis.nearest_to(fine.points.mean(axis=0)), found.pitch_rad)
-    apart = told_apart(fine, found)
+        found = refined(smooth, Hypothesis(found.axis, 2 * np.pi / told.count), pitch_known=True)
+        found = Hypothesis(found.axis.nearest_to(smooth.points.mean(axis=0)), found.pitch_rad)
+    apart = told_apart(smooth, found)
     if isinstance(apart, NoRow):
         return apart
     return _described(fine, even, apart, views, Surface(mesh.vertices, mesh.faces), told)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from core.json_files import JsonObject
 from core.row.model import BladeRow, NoRow
 from core.row.passing import NoOffset, Offset, OffsetFrom, offset_between, turn_of_camera
-from core.row.sample import SurfaceSample, sample_surface, thinned
+from core.row.sample import SurfaceSample, sample_surface, steadied, thinned
 from core.row.shared import Laid, OneBlade, laid_onto, off_axis, one_blade
 from core.scene.views import Views
 from core.settings.row import RowSettings, SameBlade, same_blades
@@ -80,7 +80,7 @@ class ModelOfRow:
     @cached_property
     def sample(self) -> SurfaceSample:
         """Points of the surface: drawn when they are asked for, as a result of one model never does."""
-        return thinned(sample_surface(self.mesh, self.seed), POINTS)
+        return thinned(sample_surface(steadied(self.mesh, self.seed), self.seed), POINTS)
 
 
 def of_further(told: RowSettings) -> RowSettings:

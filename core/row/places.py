@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from core.json_files import JsonObject
 from core.mapping.surface import Surface
@@ -24,14 +23,12 @@ I32 = NDArray[np.int32]
 
 END_SIGMAS = 3.0
 """A place that faces the axis, or away from it, is of the platform or the tip within so many sigmas of that radius."""
-EDGE_SIGMAS = 2.0
-"""A place that looks along the chord lies on an edge within so many sigmas of it."""
+EDGE_SIGMAS, LEAST_EDGE_SIGMAS = 2.0, 1.0
+"""A place that looks along the chord lies on an edge within so many sigmas of it, and any other within so many."""
 EDGE_COSINE = 2.0 * FACING
 """Cosine between the normal of a place and that of the sheet, below which it looks along the chord."""
 ON_SHEET = 0.25
 """Of a pitch: a place nearer to the middle of a blade is the blade's, whichever way its surface looks."""
-LEAST_MEAN = 0.3
-"""Length of the mean of unit normals: those of less look apart too much to have a mean."""
 _DIGITS = 6
 _EDGES = {EdgeName.LEADING: Side.LEADING_EDGE, EdgeName.TRAILING: Side.TRAILING_EDGE, EdgeName.UNKNOWN: Side.EDGE}
 
@@ -145,40 +142,21 @@ def _end(row: BladeRow, radius: float, sigma: float | None) -> Side:
 
 
 def _side(row: BladeRow, cosine: float, chord: float, edges: dict[str, tuple[float, float]]) -> Side:
-    if abs(cosine) < EDGE_COSINE:
-        for name, (at, sigma) in edges.items():
-            if abs(chord - at) < EDGE_SIGMAS * sigma:
-                return _EDGES[row.edge_a if name == "a" else row.edge_a.other]
+    reach = EDGE_SIGMAS if abs(cosine) < EDGE_COSINE else LEAST_EDGE_SIGMAS
+    for name, (at, sigma) in edges.items():
+        if abs(chord - at) < reach * sigma:
+            return _EDGES[row.edge_a if name == "a" else row.edge_a.other]
     if abs(cosine) < FACING:
         return Side.UNKNOWN
     return row.section.sides[1 if cosine > 0 else -1]
 
 
-def normals_at(mesh: Mesh, places: F64, reach: float = 0.0) -> F64:
-    """(n, 3) unit normals of a mesh at its points nearest to (n, 3) places.
-
-    Args:
-        mesh: with faces.
-        places: in its frame.
-        reach: they are the mean of those of all vertices within so far of a place, where there are some and they do not
-            look apart; with 0 they are the mean over the corners of the nearest face. The wall of a dent looks
-            anywhere, and the blade about it does not.
-    """
+def normals_at(mesh: Mesh, places: F64) -> F64:
+    """(n, 3) unit normals of a mesh at its points nearest to (n, 3) places, the mean over the corners of the face."""
     if not len(places):
         return np.zeros((0, 3))
     _, face = Surface(mesh.vertices, mesh.faces).nearest(places)
-    of_vertex = vertex_normals(mesh)
-    found = unit_rows(of_vertex[mesh.faces[face]].sum(axis=1))
-    if reach <= 0:
-        return found
-    tree = cKDTree(mesh.vertices)
-    for k, place in enumerate(places):
-        near = np.asarray(tree.query_ball_point(place, reach), np.int64)
-        mean = of_vertex[near].sum(axis=0) / max(len(near), 1)
-        length = float(np.linalg.norm(mean))
-        if length > LEAST_MEAN:
-            found[k] = mean / length
-    return found
+    return unit_rows(vertex_normals(mesh)[mesh.faces[face]].sum(axis=1))
 
 
 def blades_of_vertices(row: BladeRow, mesh: Mesh) -> I32:

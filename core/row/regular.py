@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from heapq import nlargest
 from itertools import combinations
+from math import ceil
 from operator import attrgetter
 
 import numpy as np
@@ -90,8 +91,9 @@ class Differences:
     def worst(self) -> Irregularity | None:
         """The two blades that lie on each other worst, by their limit; None where no two show the same places.
 
-        Of every blade the second worst pair counts, where it has two: one that lies wrong does so beside all others,
-        and two that share little, far apart and both half seen, may be turned against each other by their edges alone.
+        A third of the pairs of a blade, and of two one, may lie worse than the pair that it counts by. A blade that
+        lies wrong does so beside all others, one of a part that was joined wrongly beside half of them; two that share
+        little, far apart and both half seen, may be turned against each other by their edges alone.
         """
         of_blade: dict[int, list[Irregularity]] = {}
         for pair, off in self.of_pair.items():
@@ -100,7 +102,7 @@ class Differences:
             for blade in pair:
                 of_blade.setdefault(blade, []).append(found)
         off_pitches = attrgetter("off_pitches")
-        told = [nlargest(2, pairs, key=off_pitches)[-1] for pairs in of_blade.values()]
+        told = [nlargest(max(2, ceil(len(pairs) / 3)), pairs, key=off_pitches)[-1] for pairs in of_blade.values()]
         return max(told, key=attrgetter("over"), default=None)
 
     @property

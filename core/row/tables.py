@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import hypot
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from core.json_files import JsonObject
 from core.row.model import BladeRow, NoRow
 from core.row.places import OnRow, normals_at, on_row
+from core.row.sample import smoothed
 from core.scene.defect import MODEL_UNIT, DefectRecord, EventRow
 from core.scene.detection import DetectionRow
 from core.scene.on_row import blade_name
@@ -22,8 +24,6 @@ from core.surface.ply import Mesh
 
 F64 = NDArray[np.float64]
 
-REACH_SPACINGS = 0.5
-"""Of the spacing of the points that the row was found from: 0.6 mm on the inspection of 360 frames."""
 TOLD_SHARE = 0.01
 """Standard deviation of a radius that is told without one, as a share of it."""
 RADIUS_SHARE = 0.015
@@ -44,10 +44,10 @@ class RowOfModel:
     on_first: JsonObject | None = None
     """Of a further model: how it lies on the row of the first (`core.row.on_first`)."""
 
-    @property
-    def _reach(self) -> float:
-        """About a place, where its surface is asked which way it looks."""
-        return REACH_SPACINGS * self.row.radius_sigma
+    @cached_property
+    def steady(self) -> Mesh:
+        """What is asked which way the surface looks: the wall of a dent looks anywhere, the blade about it does not."""
+        return smoothed(self.mesh, self.row.radius_sigma)
 
     @property
     def unit(self) -> LengthUnit:
@@ -67,7 +67,7 @@ class RowOfModel:
         """
         own = [row for row in rows if row.x is not None and row.model in (None, self.model)]
         places = np.array([(row.x, row.y, row.z) for row in own], np.float64).reshape(-1, 3)
-        normals = self._seen(own, places, normals_at(self.mesh, places, self._reach))
+        normals = self._seen(own, places, normals_at(self.steady, places))
         found = on_row(self.row, places, normals, [sigmas.get(row.id) for row in own])
         by_id = {row.id: place.scaled(self.scale) for row, place in zip(own, found, strict=True)}
         return [self._with(row, by_id[row.id]) if row.id in by_id else row for row in rows]
@@ -87,7 +87,7 @@ class RowOfModel:
     def records(self, records: Sequence[DefectRecord]) -> tuple[list[DefectRecord], list[JsonObject]]:
         """The records of this model with their blade and where on it they lie, and the same as findings of the row."""
         places = np.array([record.centroid for record in records], np.float64).reshape(-1, 3)
-        normals = normals_at(self.mesh, places, self._reach)
+        normals = normals_at(self.steady, places)
         for k, record in enumerate(records):
             if record.normal is not None:
                 normals[k] = record.normal

@@ -72,9 +72,9 @@ def _decimated(mesh: Mesh, max_faces: int) -> Mesh:
     """
     if len(mesh.faces) <= max_faces:
         return mesh
-    utility = o3d.utility  # type: ignore[attr-defined]  # its stubs lack these parts of it
+    utility = o3d.utility
     corners, triangles = utility.Vector3dVector(mesh.vertices), utility.Vector3iVector(mesh.faces)
-    full = o3d.geometry.TriangleMesh(corners, triangles)  # type: ignore[attr-defined]  # the same
+    full = o3d.geometry.TriangleMesh(corners, triangles)
     thin = full.simplify_quadric_decimation(max_faces, boundary_weight=_BOUNDARY)
     vertices, faces = np.asarray(thin.vertices), np.asarray(thin.triangles, np.int32)
     _, nearest = cKDTree(mesh.vertices, balanced_tree=False, compact_nodes=False).query(vertices)

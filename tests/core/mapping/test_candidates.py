@@ -15,21 +15,26 @@ def candidate(share: float = 0.9, depth: float | None = None, sparse: float | No
     return Candidate(more.get("detection", 0), patch, np.zeros(3), np.ones(3), more.get("nearest", True), depth, sparse)
 
 
-def chosen(candidates: list[Candidate], visible: list[int], support: list[int]) -> dict[int, tuple[int, float]]:
+def chosen(
+    candidates: list[Candidate], visible: list[int], support: list[int], maps: bool = True
+) -> dict[int, tuple[int, float]]:
     said: Any = SimpleNamespace(n_visible=np.array(visible), n_support=np.array(support))
-    return choose(candidates, said)
+    return choose(candidates, said, maps)
 
 
-def test_the_smaller_part_of_the_pixels_is_no_place_when_nothing_else_speaks_for_it() -> None:
+def test_the_pixels_are_no_place_when_nothing_else_speaks_for_it() -> None:
     assert chosen([candidate(0.2)], [0], [0]) == {}
+    assert chosen([candidate(0.9)], [0], [0]) == {}
+    assert chosen([candidate(0.4)], [0], [0], maps=False) == {}
+    assert chosen([candidate(0.6)], [0], [0], maps=False) == {0: (0, float("inf"))}, "nothing could have spoken"
     assert chosen([candidate(0.2, depth=0.2, sparse=0.3)], [4], [0]) == {}
-    for heard in (candidate(0.6), candidate(0.2, depth=0.7), candidate(0.2, sparse=0.7)):
+    for heard in (candidate(0.6, depth=0.5), candidate(0.2, depth=0.7), candidate(0.2, sparse=0.7)):
         assert chosen([heard], [0], [0]) == {0: (0, float("inf"))}
     assert chosen([candidate(0.2)], [3], [1]) == {0: (0, float("inf"))}, "a view has a box over it"
 
 
 def test_what_is_heard_wins_over_the_nearest_that_is_not() -> None:
-    rows = [candidate(0.4), candidate(0.3, depth=0.9, nearest=False), candidate(0.7, detection=1)]
+    rows = [candidate(0.9), candidate(0.3, depth=0.9, nearest=False), candidate(0.7, depth=0.6, detection=1)]
     assert {detection: row for detection, (row, _) in chosen(rows, [0, 0, 0], [0, 0, 0]).items()} == {0: 1, 1: 2}
 
 

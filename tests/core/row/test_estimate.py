@@ -19,7 +19,7 @@ from core.row.map import row_map
 from core.row.model import BladeRow, EdgeName, NoRow, RowStatus, UnknownRow
 from core.row.overlap import Hypothesis, contrast
 from core.row.places import normals_at, on_row
-from core.row.sample import sample_surface, thinned
+from core.row.sample import sample_surface, smoothed, thinned
 from core.row.section import _sides
 from core.row.tables import scale_of_row
 from core.row.turn import Axis
@@ -37,6 +37,7 @@ AXIS_WITHIN_DEG = 0.5
 FOOT_WITHIN_MM = 1.5
 VIEWS = 6
 FEW_VIEWS = 4
+ROUGH_MM = 0.4
 
 
 @pytest.fixture(scope="module")
@@ -262,14 +263,30 @@ def test_which_way_a_place_looks_is_asked_of_what_lies_about_it() -> None:
     )
     mesh = Mesh(np.stack([x, y, z], -1).reshape(-1, 3), faces.astype(np.int32))
     places = np.column_stack([rng.uniform(-0.1, 0.1, (20, 2)), np.zeros(20)])
-    alone, about = normals_at(mesh, places), normals_at(mesh, places, 0.3)
-    assert np.linalg.norm(about, axis=1) == pytest.approx(np.ones(20))
+    alone, about = normals_at(mesh, places), normals_at(smoothed(mesh, 0.15), places)
     assert about[:, 2].min() > 0.9
     assert alone[:, 2].min() < 0.7
-    assert np.array_equal(normals_at(mesh, places, 1e-6), alone), "no vertex is so near"
     back = Mesh(
         np.concatenate([mesh.vertices, mesh.vertices - (0, 0, 0.01)]),
         np.concatenate([faces, faces[:, ::-1] + 41 * 41]).astype(np.int32),
     )
-    thin = normals_at(back, places, 0.3)
-    assert np.array_equal(thin, normals_at(back, places)), "both sides of a thin blade have no mean"
+    both = smoothed(back, 0.15)
+    apart = both.vertices[: 41 * 41] - both.vertices[41 * 41 :]
+    assert np.allclose(apart, (0.0, 0.0, 0.01)), "neither side draws the other"
+    assert smoothed(mesh, 0.0) is mesh
+
+
+def test_a_rough_surface_shows_its_row() -> None:
+    """Faces that look anywhere do not fit each other after a turn, though the blades lie on each other."""
+    true = blades(4)
+    off = np.random.default_rng(0).normal(scale=ROUGH_MM, size=true.vertices.shape)
+    rough = replace(true, vertices=true.vertices + off)
+    drawn = thinned(sample_surface(rough, 0), 5000)
+    assert contrast(drawn, Hypothesis(TRUE_AXIS, PITCH_RAD)) < MIN_CONTRAST, "it does not show it by itself"
+    found = estimate_row(rough, walk(VIEWS), seed=0)
+    assert isinstance(found, BladeRow)
+    assert found.pitch_rad == pytest.approx(PITCH_RAD, rel=0.01)
+    assert sorted(found.numbers.values()) == [1, 2, 3, 4]
+    places = true.vertices[::50]
+    index = np.round(found.sheet.position(places))
+    assert len(np.unique(index - blade_of(np.arange(len(true.vertices)))[::50])) == 1

@@ -114,6 +114,18 @@ def test_one_pair_alone_does_not_make_a_model_irregular() -> None:
     assert only.off_pitches == pytest.approx(0.3)
 
 
+def test_a_third_of_the_pairs_of_a_blade_may_lie_worse() -> None:
+    """The ends of eleven blades, half seen from either way, share little; a part joined wrongly lies so beside half."""
+    near, far = np.full(5, 0.01), np.full(5, 0.2)
+    pairs = list(combinations(range(11), 2))
+    ends = Differences(np.arange(11), {(a, b): far if b - a > 7 else near for a, b in pairs}).worst
+    assert ends is not None
+    assert ends.off_pitches == pytest.approx(0.01)
+    joined = Differences(np.arange(11), {(a, b): far if a < 8 <= b else near for a, b in pairs}).worst
+    assert joined is not None
+    assert joined.off_pitches == pytest.approx(0.2)
+
+
 def one_blade_off(count: int, blade: int, off: float) -> Differences:
     """Blades that lie on each other, but for one that lies beside all others."""
     pairs = combinations(range(count), 2)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from bench.scenes.blades import surface_point
 from core.row.blades import Sheet, fit_sheet
 from core.row.overlap import Hypothesis
-from core.row.sample import SurfaceSample, sample_surface, thinned
+from core.row.sample import SurfaceSample, sample_surface, steadied, thinned
 from core.row.section import Edge, facing, on_sheet, section_of
 from core.row.turn import Axis
 from core.surface.ply import Mesh
@@ -29,7 +29,7 @@ WITHIN_MM = 2.0
 
 
 def sampled(mesh: Mesh) -> tuple[Sheet, SurfaceSample]:
-    sample = thinned(sample_surface(mesh, 0), POINTS)
+    sample = thinned(sample_surface(mesh, 0, normals_of=steadied(mesh, 0)), POINTS)
     return fit_sheet(sample, TRUE), sample
 
 
@@ -42,8 +42,8 @@ def chord_of(sheet: Sheet, share: float) -> float:
 def torn(mesh: Mesh, sheet: Sheet) -> Mesh:
     """The blades as cameras before their leading edges see them.
 
-    The convex sides as far as `CUTS`, thinned out before them, what is left there standing off in all directions, and
-    the concave sides near the leading edge.
+    The convex sides as far as `CUTS`, in patches before them, which are rough, and the concave sides near the leading
+    edge.
     """
     rng = np.random.default_rng(0)
     corners = mesh.vertices[mesh.faces]
@@ -53,12 +53,12 @@ def torn(mesh: Mesh, sheet: Sheet) -> Mesh:
     cuts = np.array([chord_of(sheet, share) for share in CUTS])
     beyond = way * (chord - cuts[blade_of(mesh.faces[:, 0])])
     convex = facing(sheet, middle, normals / np.linalg.norm(normals, axis=1, keepdims=True)) > 0
-    kept = (beyond < -TORN_MM) | ((beyond < 0) & (rng.random(len(beyond)) < 0.15))
+    patches = np.cos(np.array((2.1, 1.3, 1.9)) * middle + rng.uniform(0.0, 6.0, 3)).prod(axis=1) > 0.1
+    kept = (beyond < -TORN_MM) | ((beyond < 0) & patches)
     kept &= convex | (way * (chord - chord_of(sheet, 0.3)) < 0)
-    corners = mesh.vertices[mesh.faces[kept]]
-    near = beyond[kept] > -TORN_MM
-    corners[near] += rng.normal(scale=0.4, size=corners[near].shape)
-    return Mesh(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3))
+    vertices, near = mesh.vertices.copy(), np.unique(mesh.faces[kept & (beyond > -TORN_MM)])
+    vertices[near] += rng.normal(scale=0.4, size=(len(near), 3))
+    return Mesh(vertices, mesh.faces[kept])
 
 
 def place(edge: Edge | None) -> float:

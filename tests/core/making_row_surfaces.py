@@ -39,9 +39,9 @@ def _make(name: str, work: Path) -> None:
     case = next(case for case in SPECIAL if case.name == name)
     make_true_result(halved(case), work / "truth", work / "result")
     mesh, views = read_mesh(work / "result/dense/mesh_poisson.ply"), views_of(open_model(work / "result/sparse"))
-    utility = o3d.utility  # type: ignore[attr-defined]  # the stubs lack these parts of it
+    utility = o3d.utility
     corners, triangles = utility.Vector3dVector(mesh.vertices), utility.Vector3iVector(mesh.faces)
-    whole = o3d.geometry.TriangleMesh(corners, triangles)  # type: ignore[attr-defined]  # the same
+    whole = o3d.geometry.TriangleMesh(corners, triangles)
     small = whole.simplify_quadric_decimation(FACES)
     FOLDER.mkdir(exist_ok=True)
     write_mesh(FOLDER / f"{name}.ply", Mesh(np.asarray(small.vertices), np.asarray(small.triangles, np.int32)))

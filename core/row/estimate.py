@@ -106,7 +106,7 @@ def describe_row(
 def _of_found(
     mesh: Mesh, steady: Mesh, views: Views, seed: int, found: Hypothesis, told: RowSettings
 ) -> BladeRow | NoRow:
-    """`describe_row`: blades are told apart on the steadied surface, whose edges are drawn in; their ends are not."""
+    """`describe_row`: all but root, tip and coverage is of the smooth surface, whose borders are drawn in."""
     smooth = thinned(sample_surface(steady, seed), FIT_POINTS)
     drawn = sample_surface(mesh, seed, normals_of=steady)
     fine = thinned(drawn, FIT_POINTS)
@@ -118,7 +118,7 @@ def _of_found(
     apart = told_apart(smooth, found)
     if isinstance(apart, NoRow):
         return apart
-    return _described(fine, even, apart, views, Surface(mesh.vertices, mesh.faces), told)
+    return _described(fine, smooth, even, apart, views, Surface(mesh.vertices, mesh.faces), told)
 
 
 def without_leap(
@@ -173,7 +173,13 @@ def told_apart(fine: SurfaceSample, row: Hypothesis) -> Apart | NoRow:
 
 
 def _described(
-    fine: SurfaceSample, even: SurfaceSample, apart: Apart, views: Views, surface: Surface, told: RowSettings
+    fine: SurfaceSample,
+    smooth: SurfaceSample,
+    even: SurfaceSample,
+    apart: Apart,
+    views: Views,
+    surface: Surface,
+    told: RowSettings,
 ) -> BladeRow:
     sheet, blades = apart.sheet, apart.differences.blades
     axis, pitch = sheet.axis, sheet.pitch_rad
@@ -201,7 +207,7 @@ def _described(
         float(tip),
         fine.spacing,
         numbers,
-        section_of(sheet, fine),
+        section_of(sheet, smooth),
         coverage_of(seen, index, numbers),
         first[int(blades.min())] == 1,
         EdgeName.UNKNOWN if told.edge_a is None else EdgeName(told.edge_a),

@@ -39,11 +39,11 @@ def chord_of(sheet: Sheet, share: float) -> float:
     return float(chord[0])
 
 
-def torn(mesh: Mesh, sheet: Sheet) -> Mesh:
+def torn(mesh: Mesh, sheet: Sheet, concave: float = 0.3) -> Mesh:
     """The blades as cameras before their leading edges see them.
 
-    The convex sides as far as `CUTS`, in patches before them, which are rough, and the concave sides near the leading
-    edge.
+    The convex sides as far as `CUTS`, in patches before them, which are rough, and the concave sides as far as a share
+    of the chord.
     """
     rng = np.random.default_rng(0)
     corners = mesh.vertices[mesh.faces]
@@ -55,7 +55,7 @@ def torn(mesh: Mesh, sheet: Sheet) -> Mesh:
     convex = facing(sheet, middle, normals / np.linalg.norm(normals, axis=1, keepdims=True)) > 0
     patches = np.cos(np.array((2.1, 1.3, 1.9)) * middle + rng.uniform(0.0, 6.0, 3)).prod(axis=1) > 0.1
     kept = (beyond < -TORN_MM) | ((beyond < 0) & patches)
-    kept &= convex | (way * (chord - chord_of(sheet, 0.3)) < 0)
+    kept &= convex | (way * (chord - chord_of(sheet, concave)) < 0)
     vertices, near = mesh.vertices.copy(), np.unique(mesh.faces[kept & (beyond > -TORN_MM)])
     vertices[near] += rng.normal(scale=0.4, size=(len(near), 3))
     return Mesh(vertices, mesh.faces[kept])
@@ -73,9 +73,10 @@ def test_both_edges_of_whole_blades_are_found() -> None:
     assert (place(edges["a"]), place(edges["b"])) == pytest.approx(ends, abs=WITHIN_MM)
 
 
-def test_a_torn_border_is_no_edge() -> None:
+@pytest.mark.parametrize("concave", [0.3, 0.0], ids=["seen from both sides", "from one side alone"])
+def test_a_torn_border_is_no_edge(concave: float) -> None:
     whole, _ = sampled(blades(3))
-    sheet, sample = sampled(torn(blades(3), whole))
+    sheet, sample = sampled(torn(blades(3), whole, concave))
     edges = section_of(sheet, sample).edges
     seen, hidden = ("a", "b") if chord_of(whole, 0.0) < chord_of(whole, 1.0) else ("b", "a")
     assert edges[hidden] is None

@@ -10,7 +10,7 @@ from bench.scenes.blades import surface_point
 from core.row.blades import Sheet, fit_sheet
 from core.row.overlap import Hypothesis
 from core.row.sample import SurfaceSample, sample_surface, steadied, thinned
-from core.row.section import Edge, facing, on_sheet, section_of
+from core.row.section import Edge, _edge, facing, on_sheet, section_of
 from core.row.turn import Axis
 from core.surface.ply import Mesh
 from tests.core.making_blades import PITCH_RAD, SCENE, blade_of, blades
@@ -81,3 +81,15 @@ def test_a_torn_border_is_no_edge(concave: float) -> None:
     seen, hidden = ("a", "b") if chord_of(whole, 0.0) < chord_of(whole, 1.0) else ("b", "a")
     assert edges[hidden] is None
     assert place(edges[seen]) == pytest.approx(chord_of(sheet, 0.0), abs=WITHIN_MM)
+
+
+def test_an_edge_seen_from_one_side_alone_ends_sharply() -> None:
+    """A side that bends away at its edge shows more points there; where the view ends they get fewer."""
+    rng = np.random.default_rng(0)
+    chord = np.concatenate(
+        [rng.uniform(4.0, 20.0, 4000), rng.uniform(18.0, 20.0, 300), 4.0 - rng.exponential(1.5, 600)]
+    )
+    rho, looks = rng.uniform(-10.0, 10.0, len(chord)), np.ones(len(chord))
+    seen = _edge(chord, rho, looks, 0.5, 1)
+    assert place(seen) == pytest.approx(20.0, abs=0.3)
+    assert _edge(chord, rho, looks, 0.5, -1) is None
